@@ -1,0 +1,1 @@
+//! babble_env

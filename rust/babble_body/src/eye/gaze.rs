@@ -1,0 +1,346 @@
+//! The eye's two rotations: from gaze to camera and back.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+use super::camera::axes;
+use super::{EyeError, Pinhole};
+
+/// Order of the eye's rotations, and the gaze at zero pan and tilt.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum GazeFrame {
+    /// Tilt about the fixed left-right axis, then pan. Zero looks straight
+    /// down, with y upwards in the image.
+    Helmholtz,
+    /// Pan about the vertical, then tilt. Zero looks straight ahead along y,
+    /// with z upwards in the image.
+    Fick,
+}
+
+/// Where the eye is, how it turns and what its retina resolves.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EyeConfig {
+    /// Centre of the eye from the shoulder [m]; 10 cm ahead and 25 cm above.
+    pub position_m: [f64; 3],
+    /// Edge of the square image [pixel], 8 to 4096; the paper has 630.
+    pub pixels: usize,
+    /// Field of view, both ways [deg], 1 to 170; the paper has 120.
+    pub field_deg: f64,
+    /// Order of rotations and zero.
+    pub frame: GazeFrame,
+    /// Lowest and highest pan [deg]: within ±90 in the Helmholtz frame,
+    /// within ±180 in the Fick frame.
+    pub pan_deg: [f64; 2],
+    /// Lowest and highest tilt [deg]: within ±180 in the Helmholtz frame,
+    /// within ±90 in the Fick frame.
+    pub tilt_deg: [f64; 2],
+}
+
+impl Default for EyeConfig {
+    fn default() -> Self {
+        Self::helmholtz()
+    }
+}
+
+impl EyeConfig {
+    /// The eye of body profile `paper`: zero straight down, ±65°.
+    #[must_use]
+    pub fn helmholtz() -> Self {
+        Self {
+            position_m: [0.0, 0.10, 0.25],
+            pixels: 630,
+            field_deg: 120.0,
+            frame: GazeFrame::Helmholtz,
+            pan_deg: [-65.0, 65.0],
+            tilt_deg: [-65.0, 65.0],
+        }
+    }
+
+    /// The eye of body profile `icub`: zero straight ahead, all round.
+    #[must_use]
+    pub fn fick() -> Self {
+        Self {
+            frame: GazeFrame::Fick,
+            pan_deg: [-180.0, 180.0],
+            tilt_deg: [-90.0, 0.0],
+            ..Self::helmholtz()
+        }
+    }
+
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// [`EyeError::OutOfBound`] for the first field outside of its bound.
+    pub fn validate(&self) -> Result<(), EyeError> {
+        for value in self.position_m {
+            within("position_m", value, value.is_finite(), "finite [m]")?;
+        }
+        let pixels = self.pixels as f64;
+        let fits = (8..=4096).contains(&self.pixels);
+        within("pixels", pixels, fits, "from 8 to 4096")?;
+        let fits = (1.0..=170.0).contains(&self.field_deg);
+        within("field_deg", self.field_deg, fits, "from 1 to 170 [deg]")?;
+        match self.frame {
+            GazeFrame::Helmholtz => {
+                range("pan_deg", self.pan_deg, 90.0, "low < high within ±90 [deg]")?;
+                range(
+                    "tilt_deg",
+                    self.tilt_deg,
+                    180.0,
+                    "low < high within ±180 [deg]",
+                )
+            }
+            GazeFrame::Fick => {
+                range(
+                    "pan_deg",
+                    self.pan_deg,
+                    180.0,
+                    "low < high within ±180 [deg]",
+                )?;
+                range(
+                    "tilt_deg",
+                    self.tilt_deg,
+                    90.0,
+                    "low < high within ±90 [deg]",
+                )
+            }
+        }
+    }
+}
+
+fn within(
+    field: &'static str,
+    value: f64,
+    fits: bool,
+    bound: &'static str,
+) -> Result<(), EyeError> {
+    if fits {
+        Ok(())
+    } else {
+        Err(EyeError::OutOfBound {
+            field,
+            value,
+            bound,
+        })
+    }
+}
+
+fn range(
+    field: &'static str,
+    [low, high]: [f64; 2],
+    limit: f64,
+    bound: &'static str,
+) -> Result<(), EyeError> {
+    within(field, low, low >= -limit && low < high, bound)?;
+    within(field, high, high <= limit, bound)
+}
+
+/// Where the eye looks.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Gaze {
+    /// Turn to the right [rad].
+    pub pan: f64,
+    /// Turn upwards in the image [rad].
+    pub tilt: f64,
+}
+
+/// An eye with two degrees of freedom about a fixed centre.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Eye {
+    config: EyeConfig,
+    position: Vector3<f64>,
+    /// Lowest and highest [rad].
+    pub(super) pan: [f64; 2],
+    pub(super) tilt: [f64; 2],
+    /// Zero gaze at the paper's pixels, for its focal length.
+    zero: Pinhole,
+}
+
+impl Eye {
+    /// An eye as configured.
+    ///
+    /// # Errors
+    /// [`EyeError::OutOfBound`] as [`EyeConfig::validate`].
+    pub fn new(config: EyeConfig) -> Result<Self, EyeError> {
+        config.validate()?;
+        let position = Vector3::from(config.position_m);
+        let zero = Pinhole::from_field(
+            position,
+            rotation(config.frame, Gaze::default()),
+            config.field_deg,
+            config.pixels,
+            config.pixels,
+        );
+        Ok(Self {
+            position,
+            pan: config.pan_deg.map(f64::to_radians),
+            tilt: config.tilt_deg.map(f64::to_radians),
+            zero,
+            config,
+        })
+    }
+
+    /// The config it was made from.
+    #[must_use]
+    pub fn config(&self) -> &EyeConfig {
+        &self.config
+    }
+
+    /// The eye's image at a gaze.
+    #[must_use]
+    pub fn camera(&self, gaze: Gaze) -> Pinhole {
+        Pinhole {
+            rotation: rotation(self.config.frame, gaze),
+            ..self.zero.clone()
+        }
+    }
+
+    /// The eye's image at a gaze, sampled at `pixels` × `pixels`.
+    #[must_use]
+    pub fn camera_sized(&self, gaze: Gaze, pixels: usize) -> Pinhole {
+        let scale = pixels as f64 / self.config.pixels as f64;
+        Pinhole {
+            width: pixels,
+            height: pixels,
+            focal_px: self.zero.focal_px * scale,
+            ..self.camera(gaze)
+        }
+    }
+
+    /// Pan and tilt over their ranges, the eye's proprioception: [0, 1] each
+    /// for a gaze within the ranges.
+    #[must_use]
+    pub fn normalised(&self, gaze: Gaze) -> [f64; 2] {
+        let share = |angle: f64, [low, high]: [f64; 2]| (angle - low) / (high - low);
+        [share(gaze.pan, self.pan), share(gaze.tilt, self.tilt)]
+    }
+
+    /// The gaze with the given pan and tilt over their ranges: the inverse of
+    /// [`normalised`](Self::normalised).
+    #[must_use]
+    pub fn from_normalised(&self, [pan, tilt]: [f64; 2]) -> Gaze {
+        let angle = |share: f64, [low, high]: [f64; 2]| low + share * (high - low);
+        Gaze {
+            pan: angle(pan, self.pan),
+            tilt: angle(tilt, self.tilt),
+        }
+    }
+
+    /// The gaze at which a world point is in the middle of the image. It is
+    /// not clipped to the ranges.
+    #[must_use]
+    pub fn fixate(&self, point: &Vector3<f64>) -> Gaze {
+        let v = point - self.position;
+        let length = |a: f64, b: f64| (a * a + b * b).sqrt();
+        match self.config.frame {
+            GazeFrame::Helmholtz => Gaze {
+                pan: libm::atan2(v.x, length(v.y, v.z)),
+                tilt: libm::atan2(v.y, -v.z),
+            },
+            GazeFrame::Fick => Gaze {
+                pan: libm::atan2(v.x, v.y),
+                tilt: libm::atan2(v.z, length(v.x, v.y)),
+            },
+        }
+    }
+
+    /// The nearest gaze within the ranges; pan wraps where its range is the
+    /// full circle.
+    #[must_use]
+    pub fn clipped(&self, gaze: Gaze) -> Gaze {
+        let [low, high] = self.pan;
+        let turn = 2.0 * PI;
+        let pan = if self.config.pan_deg == [-180.0, 180.0] {
+            gaze.pan - turn * ((gaze.pan + PI) / turn).floor()
+        } else {
+            gaze.pan.clamp(low, high)
+        };
+        Gaze {
+            pan,
+            tilt: gaze.tilt.clamp(self.tilt[0], self.tilt[1]),
+        }
+    }
+
+    /// Where the line of sight meets the horizontal plane at height `z` [m]:
+    /// (x, y) [m], or `None` if it does not.
+    #[must_use]
+    pub fn target_in_plane(&self, gaze: Gaze, z: f64) -> Option<[f64; 2]> {
+        self.point_in_plane(gaze, [0.0, 0.0], z)
+    }
+
+    /// The point (x, y) [m] of the horizontal plane at height `z` [m] that
+    /// has the given [direction angles](Pinhole::direction_angles) [rad] at a
+    /// gaze; `None` if that direction does not meet the plane.
+    #[must_use]
+    pub fn point_in_plane(&self, gaze: Gaze, angles: [f64; 2], z: f64) -> Option<[f64; 2]> {
+        let ray = self.camera(gaze).ray(angles);
+        let reach = (z - self.position.z) / ray.z;
+        (reach.is_finite() && reach > 0.0).then(|| {
+            [
+                self.position.x + reach * ray.x,
+                self.position.y + reach * ray.y,
+            ]
+        })
+    }
+
+    /// The zero gaze, clipped to the ranges.
+    #[must_use]
+    pub fn rest(&self) -> Gaze {
+        self.clipped(Gaze::default())
+    }
+
+    /// Gazes that between them see all around below the eye.
+    pub(super) fn search_gazes(&self) -> impl Iterator<Item = Gaze> {
+        let [quarter, half] = [FRAC_PI_2, PI];
+        let eighth = 0.5 * quarter;
+        let gazes = match self.config.frame {
+            GazeFrame::Helmholtz => [
+                [0.0, eighth],
+                [0.0, -eighth],
+                [eighth, 0.0],
+                [-eighth, 0.0],
+                [0.0, 0.0],
+            ],
+            GazeFrame::Fick => [
+                [0.0, -eighth],
+                [quarter, -eighth],
+                [-quarter, -eighth],
+                [half, -eighth],
+                [0.0, -quarter],
+            ],
+        };
+        gazes
+            .map(|[pan, tilt]| self.clipped(Gaze { pan, tilt }))
+            .into_iter()
+    }
+}
+
+/// Camera from world at a gaze; rows right, up, forward.
+fn rotation(frame: GazeFrame, gaze: Gaze) -> nalgebra::Matrix3<f64> {
+    let (sin_p, cos_p) = libm::sincos(gaze.pan);
+    let (sin_t, cos_t) = libm::sincos(gaze.tilt);
+    match frame {
+        GazeFrame::Helmholtz => {
+            let tilted = Vector3::new(0.0, sin_t, -cos_t);
+            let up = Vector3::new(0.0, cos_t, sin_t);
+            axes(
+                Vector3::x() * cos_p - tilted * sin_p,
+                up,
+                Vector3::x() * sin_p + tilted * cos_p,
+            )
+        }
+        GazeFrame::Fick => {
+            let level = Vector3::new(sin_p, cos_p, 0.0);
+            axes(
+                Vector3::new(cos_p, -sin_p, 0.0),
+                Vector3::z() * cos_t - level * sin_t,
+                level * cos_t + Vector3::z() * sin_t,
+            )
+        }
+    }
+}

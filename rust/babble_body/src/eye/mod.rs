@@ -1,0 +1,26 @@
+//! The eye: what a pinhole camera sees of a scene, and the reflex that turns
+//! it to the red object (Eq. 1).
+//!
+//! A scene is a slice of [`Primitive`]s. [`red_centroid`] finds the red object
+//! in a camera's image by looking at its window alone, [`rasterise`] gives
+//! primitive and depth of every pixel, [`render_rgb`] a picture. [`Eye`] turns
+//! pan and tilt into a camera and back.
+
+mod camera;
+mod centroid;
+mod error;
+mod gaze;
+mod piece;
+mod raster;
+mod reflex;
+mod row;
+mod scene;
+mod view;
+
+pub use camera::Pinhole;
+pub use centroid::red_centroid;
+pub use error::EyeError;
+pub use gaze::{Eye, EyeConfig, Gaze, GazeFrame};
+pub use raster::{Raster, rasterise};
+pub use scene::{Material, Primitive, Shape};
+pub use view::third_person;

@@ -1,0 +1,109 @@
+"""Who may know whom: each test fails when a line of ARCHITECTURE.md's invariants is crossed."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+import time
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+# Each crate with the crates of ours that it may depend on. A new crate enters here first.
+MAY_KNOW = {
+    "babble_brain": set(),
+    "babble_body": set(),
+    "babble_env": {"babble_brain", "babble_body"},
+    "babble_agent": {"babble_brain", "babble_env"},
+    "babble_py": {"babble_brain", "babble_body", "babble_env", "babble_agent"},
+}
+
+# Libraries that one crate alone may name, by their first letters (rapier3d, parry3d, numpy ...).
+OWNERS = {
+    "rapier": "babble_body",
+    "parry": "babble_body",
+    "pyo3": "babble_py",
+    "numpy": "babble_py",
+}
+
+HEAVY_MODULES = {"matplotlib", "pygame", "ray", "rich", "stable_baselines3", "torch", "typer"}
+
+
+@pytest.fixture(scope="module")
+def crates(repository: Path) -> dict[str, dict[str, Any]]:
+    """The workspace's packages by name, as cargo reads them."""
+    command = ["cargo", "metadata", "--no-deps", "--offline", "--format-version", "1"]
+    run = subprocess.run(command, cwd=repository, check=True, capture_output=True, text=True)
+    return {package["name"]: package for package in json.loads(run.stdout)["packages"]}
+
+
+def dependencies(crate: dict[str, Any]) -> set[str]:
+    """Names of all the crates that `crate` depends on, also in tests, benches and build scripts."""
+    return {dependency["name"] for dependency in crate["dependencies"]}
+
+
+def owner_of(library: str) -> str | None:
+    return next((crate for prefix, crate in OWNERS.items() if library.startswith(prefix)), None)
+
+
+def libraries_named(source: str) -> set[str]:
+    """Libraries with an owner that Rust code names, comments and strings aside."""
+    code = re.sub(r'"[^"\n]*"|//.*', "", source)
+    return set(re.findall(rf"\b(?:{'|'.join(OWNERS)})\w*", code))
+
+
+def test_each_crate_knows_only_those_below_it(crates):
+    ours = {name: dependencies(crate) & crates.keys() for name, crate in crates.items()}
+    too_much = {name: known - MAY_KNOW[name] for name, known in ours.items()}
+    assert not {name: known for name, known in too_much.items() if known}
+
+
+def test_each_engine_and_binding_has_one_owner_among_the_dependencies(crates):
+    strangers = {
+        (name, library)
+        for name, crate in crates.items()
+        for library in dependencies(crate)
+        if owner_of(library) not in {None, name}
+    }
+    assert not strangers
+
+
+def test_each_engine_and_binding_is_named_in_its_owners_sources_alone(crates, repository):
+    # Dependencies do not show a library that another crate re-exports; sources do.
+    strangers = {
+        (str(path.relative_to(repository)), library)
+        for name in crates
+        for path in (repository / "rust" / name).rglob("*.rs")
+        for library in libraries_named(path.read_text(encoding="utf-8"))
+        if owner_of(library) != name
+    }
+    assert not strangers
+
+
+@pytest.mark.parametrize(
+    ("source", "libraries"),
+    [
+        ("use rapier3d::prelude::*;", {"rapier3d"}),
+        ("let hit = babble_body::parry3d::query::cast();", {"parry3d"}),
+        ("use babble_body::rapier3d as engine; // as pyo3 does", {"rapier3d"}),
+        ("/// Same as numpy::clip.", set()),
+        ('let text = "numpy"; my_rapier();', set()),
+    ],
+)
+def test_the_scan_sees_code_and_not_prose(source, libraries):
+    assert libraries_named(source) == libraries
+
+
+def test_import_loads_nothing_heavy(capsys):
+    program = "import sys, gym_babble; print(*{name.partition('.')[0] for name in sys.modules})"
+    started = time.perf_counter()
+    command = [sys.executable, "-c", program]
+    run = subprocess.run(command, check=True, capture_output=True, text=True)
+    with capsys.disabled():
+        print(f"\nimport gym_babble, in a new interpreter: {time.perf_counter() - started:.2f} s")
+    assert not HEAVY_MODULES & set(run.stdout.split())

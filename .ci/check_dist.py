@@ -1,0 +1,46 @@
+"""Check what a folder's wheel and sdist hold: the package alone, and the whole workspace."""
+
+from __future__ import annotations
+
+import sys
+import tarfile
+import zipfile
+from pathlib import Path
+
+SDIST_NEEDS = {"Cargo.toml", "Cargo.lock", "pyproject.toml", "README.md", "LICENSE-MIT"}
+
+
+def check_wheel(path: Path) -> None:
+    """One abi3 wheel, with nothing in it but gym_babble/ and its metadata."""
+    with zipfile.ZipFile(path) as wheel:
+        names = wheel.namelist()
+    strays = [name for name in names if not name.startswith(("gym_babble/", "gym_babble-"))]
+    sources = {str(source) for source in Path("gym_babble").rglob("*.py")}
+    missing = (sources | {"gym_babble/py.typed", "gym_babble/_core.pyi"}) - set(names)
+    if strays or missing or "-abi3-" not in path.name:
+        sys.exit(f"error: {path}: strays {strays}, missing {sorted(missing)}")
+    print(f"{path.name}: {len(names)} files, {path.stat().st_size / 1e6:.1f} MB")
+
+
+def check_sdist(path: Path) -> None:
+    """The workspace's sources, and nothing that was built."""
+    with tarfile.open(path) as sdist:
+        names = {name.partition("/")[2] for name in sdist.getnames()}
+    crates = {str(manifest) for manifest in Path("rust").glob("*/Cargo.toml")}
+    missing = (SDIST_NEEDS | crates) - names
+    built = [name for name in names if name.endswith((".so", ".pyd", ".pyc"))]
+    if missing or built:
+        sys.exit(f"error: {path}: missing {sorted(missing)}, built files {built}")
+    print(f"{path.name}: {len(names)} files, {path.stat().st_size / 1e6:.1f} MB")
+
+
+def main(folder: Path) -> None:
+    """Check the one wheel and the one sdist in `folder`."""
+    (wheel,) = folder.glob("*.whl")
+    (sdist,) = folder.glob("*.tar.gz")
+    check_wheel(wheel)
+    check_sdist(sdist)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

@@ -1,0 +1,82 @@
+# What CI runs is what people run. `make` alone lists the targets.
+#
+# Set-up lives in .venv and leaves two stamps there: one for the Python dependencies (pyproject.toml
+# and constraints.txt), one for the extension (the Rust sources). Editing Python repeats neither.
+#
+# The physics engine is the long compile, so it is compiled for two settings and no more: `release`
+# for the extension, the wheel and the benchmarks, and `test` for `cargo test`, which wants debug
+# assertions and links each test in a second instead of optimising the engine into each anew. Lint
+# only checks types, in the same directory.
+
+SHELL := /bin/bash
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+STAMPS := $(VENV)/stamps
+
+# One interpreter for every build of pyo3, so that none undoes another.
+export PYO3_PYTHON := $(CURDIR)/$(BIN)/python
+
+RUST_VERSION := $(shell sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
+NOT_IN_EXTENSION := tests benches examples proptest-regressions snapshots
+EXTENSION_SOURCES := Cargo.toml Cargo.lock $(shell find rust -type f -not -name '*.md' \
+	$(foreach folder,$(NOT_IN_EXTENSION),-not -path '*/$(folder)/*'))
+
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test lint lint-rust lint-python bench constraints clean
+
+help: ## List the targets
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+setup: $(STAMPS)/extension ## Install everything into .venv and build the extension (the others call it)
+
+demo: setup ## Compare the agents and write the figures and the table into report/
+	$(BIN)/gym-babble compare --report report
+
+test: setup ## Run the Rust and the Python tests
+	cargo test
+	$(BIN)/python -m pytest
+
+lint: lint-rust lint-python ## Check formatting, lints and types of both languages
+
+lint-rust: $(STAMPS)/dependencies
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets -- -D warnings
+
+lint-python: $(STAMPS)/dependencies
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+
+bench: setup ## Measure: criterion in Rust, pytest-benchmark in Python
+	cargo bench
+	$(BIN)/python -m pytest -o python_files='bench_*.py' --benchmark-only
+
+constraints: $(STAMPS)/dependencies ## Pin the newest releases that pyproject.toml allows, for every Python and platform
+	$(BIN)/uv pip compile pyproject.toml --all-extras --universal --python-version 3.10 --upgrade \
+		--no-annotate --custom-compile-command 'make constraints' --quiet --output-file constraints.txt
+
+clean: ## Remove what the other targets made
+	rm -rf $(VENV) target report dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
+	find gym_babble tests -name __pycache__ -prune -exec rm -rf {} +
+	rm -f gym_babble/_core*.so
+
+# constraints.txt names every package of every extra, so it is also the list to install.
+$(STAMPS)/dependencies: pyproject.toml constraints.txt
+	@command -v "$(PYTHON)" >/dev/null || \
+		{ echo "error: $(PYTHON) not found: install Python 3.10 or newer, or name one: make PYTHON=python3.12 ..." >&2; exit 1; }
+	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 10))' || \
+		{ echo "error: Python 3.10 or newer is needed, and $(PYTHON) is $$("$(PYTHON)" --version 2>&1)" >&2; exit 1; }
+	@test -x $(BIN)/pip || "$(PYTHON)" -m venv $(VENV) || \
+		{ rm -rf $(VENV); echo "error: $(PYTHON) -m venv failed: on Debian and Ubuntu install python3-venv" >&2; exit 1; }
+	$(BIN)/python -m pip install --disable-pip-version-check --quiet -r constraints.txt
+	@mkdir -p $(@D) && touch $@
+
+# `maturin develop` installs the package editable; env keeps an active conda out of its choice of Python.
+$(STAMPS)/extension: $(STAMPS)/dependencies $(EXTENSION_SOURCES)
+	@command -v cargo >/dev/null || \
+		{ echo "error: cargo not found: install Rust $(RUST_VERSION) or newer (rustup is the usual way)" >&2; exit 1; }
+	@printf '%s\n' $(RUST_VERSION) "$$(cargo --version | cut -d ' ' -f 2)" | sort -V -C || \
+		{ echo "error: Rust $(RUST_VERSION) or newer is needed, and this is $$(cargo --version): rustup update" >&2; exit 1; }
+	env -u CONDA_PREFIX VIRTUAL_ENV='$(CURDIR)/$(VENV)' $(BIN)/maturin develop --release
+	@touch $@

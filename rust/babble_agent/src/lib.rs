@@ -1,1 +1,11 @@
-//! babble_agent
+#![doc = include_str!("../README.md")]
+
+pub mod babbling;
+mod error;
+pub mod hebb;
+pub mod reference;
+pub mod store;
+
+pub use babbling::{Babbling, Experience};
+pub use error::AgentError;
+pub use hebb::{Hebb, HebbConfig, Variant};

@@ -1,1 +1,17 @@
-//! babble_body
+#![doc = include_str!("../README.md")]
+
+pub mod arm;
+pub mod config;
+pub mod dynamics;
+mod error;
+pub mod eye;
+pub mod joints;
+pub mod obstacle;
+pub mod pose;
+pub mod skeleton;
+
+pub use arm::PlanarArm;
+pub use config::Body;
+pub use dynamics::{ArmState, Dynamics};
+pub use error::BodyError;
+pub use obstacle::{ContactWatch, Obstacle};

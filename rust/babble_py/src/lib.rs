@@ -1,1 +1,33 @@
-//! py
+//! `gym_babble._core`: the Python face of the Rust crates. Conversions and nothing else.
+
+// Methods of Python classes take owned arguments and plain `self`, as pyo3 hands them over.
+#![allow(clippy::needless_pass_by_value, clippy::unused_self)]
+
+mod batch;
+mod brain;
+mod convert;
+mod errors;
+mod hebb;
+mod task;
+
+use pyo3::prelude::*;
+
+/// The Rust core of `gym_babble`.
+#[pymodule]
+mod _core {
+    #[pymodule_export]
+    use crate::batch::Batch;
+    #[pymodule_export]
+    use crate::brain::{Association, PopulationMap, generator_curve};
+    #[pymodule_export]
+    use crate::hebb::Hebb;
+    #[pymodule_export]
+    use crate::task::{Task, complete_config, load_config, profile_config, profiles};
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+        module.add("debug_build", cfg!(debug_assertions))
+    }
+}

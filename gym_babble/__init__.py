@@ -1,0 +1,37 @@
+"""Reaching learned by motor babbling: Gymnasium environments with a Rust core.
+
+Importing this package registers its environments with Gymnasium:
+
+    >>> import gymnasium as gym, gym_babble
+    >>> env = gym.make("BabbleReach-v0")
+
+After Caligiore, Ferrauto, Parisi, Accornero, Capozza, Baldassarre: Using motor babbling and Hebb
+rules for modeling the development of reaching with obstacles and grasping (2008).
+"""
+
+import warnings
+
+from gym_babble._core import __version__, debug_build
+from gym_babble.agents import HebbBabbling, Oracle, RandomBabbling, Scripted
+from gym_babble.config import Config
+from gym_babble.evaluation import Evaluation, evaluate
+from gym_babble.registration import register_all
+from gym_babble.scenarios import Scenario, scenarios
+
+__all__ = [
+    "Config",
+    "Evaluation",
+    "HebbBabbling",
+    "Oracle",
+    "RandomBabbling",
+    "Scenario",
+    "Scripted",
+    "__version__",
+    "evaluate",
+    "scenarios",
+]
+
+register_all()
+
+if debug_build:
+    warnings.warn("gym_babble's core was built without optimisation: run `make setup`", stacklevel=2)

@@ -1,0 +1,250 @@
+"""Body and task as dataclasses: every number of the model, with its unit and source.
+
+Sources: [P] the paper, [A] derived, [F] fitted to the paper's tables, [C] a free choice.
+A config is a profile (`"paper"` or `"icub"`) with any of its fields replaced:
+
+    >>> from dataclasses import replace
+    >>> from gym_babble import Config
+    >>> config = Config.profile_named("paper")
+    >>> longer = replace(config, body=replace(config.body, arm=Arm(upper_arm_m=0.2)))
+
+or, where only a few numbers change, a dict: `{"profile": "icub", "reach": {"movement_s": 5.0}}`.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields, is_dataclass
+from pathlib import Path
+from typing import Any, TypeAlias, get_type_hints
+
+from gym_babble import _core
+from gym_babble.errors import ConfigError
+
+__all__ = [
+    "Arm",
+    "Body",
+    "BodyLike",
+    "Config",
+    "Cylinder",
+    "EyeConfig",
+    "Hand",
+    "Joint",
+    "Muscles",
+    "ReachNumbers",
+    "Target",
+    "config_json",
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Arm:
+    """The arm's two segments."""
+
+    upper_arm_m: float = 0.15
+    """Length of the upper arm [m] [P]."""
+    forearm_m: float = 0.13
+    """Length of the forearm [m] [P]."""
+    half_width_m: float = 0.01
+    """Half-width of arm and hand [m] [F]. Larger touches obstacles earlier."""
+    density_kg_m3: float = 1100.0
+    """Density of arm and hand [kg/m³] [C]. Hardly matters beside the muscles' damping."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hand:
+    """The hand's segments."""
+
+    palm_m: float = 0.055
+    """Length of the palm from the wrist to the fingers' pivots [m] [C]."""
+    palm_height_m: float = 0.06
+    """Height of the palm across the plane of motion [m] [C]."""
+    finger_m: tuple[float, float, float, float] = (0.01, 0.02, 0.017, 0.014)
+    """Pivot segment and three phalanges of each finger [m] [P]."""
+    thumb_m: tuple[float, float, float, float] = (0.02, 0.02, 0.017, 0.014)
+    """Pivot segment and three phalanges of the thumb [m] [P]."""
+    finger_spacing_m: float = 0.015
+    """Distance between neighbouring fingers [m] [C]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Joint:
+    """One of the 26 joints."""
+
+    lower_deg: float
+    """Lower end of the range [deg]."""
+    upper_deg: float
+    """Upper end of the range [deg]."""
+    locked_deg: float | None = None
+    """Angle at which the joint is held [deg]; None for shoulder and elbow, which move."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Muscles:
+    """The muscles of Eq. 2, T = K_P (q_des − q) − K_D q̇."""
+
+    kp: float = 50.0
+    """Stiffness K_P [N·m/rad] [P]."""
+    kd: float = 40.0
+    """Damping K_D [N·m·s/rad] [P]. The arm's time constant is kd / kp seconds."""
+    torque_max: float = 50.0
+    """Torque of an action of 1 in torque control [N·m] [C]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class EyeConfig:
+    """The camera and its frame."""
+
+    position_m: tuple[float, float, float] = (0.0, 0.1, 0.25)
+    """Position from the shoulder [m]: x right, y forward, z up [P]."""
+    pixels: int = 630
+    """Edge of the image [pixel] [P]."""
+    field_deg: float = 120.0
+    """Field of view along each edge [deg] [P]."""
+    frame: str = "helmholtz"
+    """Order of the axes: "helmholtz" (tilt, then pan; zero straight down) [F] or "fick" (pan, then
+    tilt; zero straight ahead) [C]."""
+    pan_deg: tuple[float, float] = (-65.0, 65.0)
+    """Range of pan [deg], the eye's proprioception 0…1 [F]."""
+    tilt_deg: tuple[float, float] = (-65.0, 65.0)
+    """Range of tilt [deg], the eye's proprioception 0…1 [F]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cylinder:
+    """The vertical obstacle."""
+
+    radius_m: float = 0.035
+    """Radius [m] [F]; 0.02 [C] in profile "icub"."""
+    height_m: float = 0.3
+    """Height [m], half of it above the arm's plane [C]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Target:
+    """The red sphere to be reached; it is immaterial."""
+
+    radius_m: float = 0.012
+    """Radius [m] [C]."""
+
+
+def _paper_joints() -> dict[str, Joint]:
+    return Config.profile_named("paper").body.joints
+
+
+@dataclass(frozen=True, kw_only=True)
+class Body:
+    """The whole body and the things in its world."""
+
+    arm: Arm = field(default_factory=Arm)
+    hand: Hand = field(default_factory=Hand)
+    joints: dict[str, Joint] = field(default_factory=_paper_joints)
+    """Ranges and locks of the 26 joints. Shoulder −75…180°, elbow 5…130° [F]; −10…95° and
+    15…106° in profile "icub" [C]; the others are locked at 0 [P]."""
+    muscles: Muscles = field(default_factory=Muscles)
+    eye: EyeConfig = field(default_factory=EyeConfig)
+    obstacle: Cylinder = field(default_factory=Cylinder)
+    target: Target = field(default_factory=Target)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReachNumbers:
+    """The reaching task."""
+
+    distance_m: tuple[float, float] = (0.08, 0.25)
+    """Lowest and highest distance from start to target [m] [F]; 0.1…0.2 [C] in profile "icub"."""
+    success_radius_m: float = 0.02
+    """Success when the fingertip is at most this far from the target [m] [C]."""
+    b_range: tuple[float, float] = (0.01, 0.99)
+    """Lowest and highest b1 and b2 [C]."""
+    movement_s: float = 8.0
+    """Movement time T of the pattern generators [s] [C]. Shorter movements lose their curvature to
+    the muscles' lag."""
+    settle_time_constants: float = 4.0
+    """Time to settle after T, in muscle time constants [C]."""
+    delta_posture_deg: float = 5.0
+    """Change of an equilibrium point by an action of 1 in `delta_posture` control [deg] [C]."""
+    settled_speed_rad_s: float = 0.05
+    """Joint speed below which the arm counts as settled [rad/s] [C]."""
+    control_period_s: float = 0.05
+    """Time between two actions [s] [C]."""
+    physics_steps: int = 10
+    """Physics steps in a control period [C]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Config:
+    """Body and task."""
+
+    profile: str = "paper"
+    """The profile that this config started from."""
+    body: Body = field(default_factory=Body)
+    reach: ReachNumbers = field(default_factory=ReachNumbers)
+
+    @classmethod
+    def profile_named(cls, name: str) -> Config:
+        """The config of a profile, "paper" or "icub".
+
+        Raises:
+            ConfigError: There is no profile of that name.
+        """
+        return cls.from_json(_core.profile_config(name))
+
+    @classmethod
+    def load(cls, path: str | Path) -> Config:
+        """A config from a TOML or JSON file that holds what differs from its profile.
+
+        Raises:
+            ConfigError: The file cannot be read, or a field is unknown or out of bounds.
+        """
+        return cls.from_json(_core.load_config(path))
+
+    @classmethod
+    def from_json(cls, text: str) -> Config:
+        """A config from JSON that holds what differs from its profile.
+
+        Raises:
+            ConfigError: A field is unknown or out of bounds.
+        """
+        return _build(cls, json.loads(_core.complete_config(text)))
+
+    def to_json(self) -> str:
+        """The whole config as JSON."""
+        return json.dumps(asdict(self))
+
+
+BodyLike: TypeAlias = "str | Path | Mapping[str, Any] | Config"
+"""What `body=` takes: a profile's name, a file's path, a dict of differences, or a `Config`."""
+
+
+def config_json(body: BodyLike) -> str:
+    """The complete, checked config for what `body=` takes, as JSON.
+
+    Raises:
+        ConfigError: A name, field or value is not one there is.
+    """
+    if isinstance(body, Config):
+        return _core.complete_config(body.to_json())
+    if isinstance(body, Mapping):
+        try:
+            return _core.complete_config(json.dumps(body))
+        except TypeError as error:
+            raise ConfigError(f"config: {error}") from error
+    if isinstance(body, Path) or (isinstance(body, str) and body.endswith((".toml", ".json"))):
+        return _core.load_config(body)
+    if isinstance(body, str):
+        return _core.profile_config(body)
+    raise ConfigError(
+        f"body is a {type(body).__name__}; it must be a profile's name, a path, a dict or a Config"
+    )
+
+
+def _build(kind: Any, value: Any) -> Any:
+    """A dataclass of type `kind` from what JSON holds."""
+    if is_dataclass(kind) and isinstance(value, dict):
+        hints = get_type_hints(kind)
+        return kind(**{f.name: _build(hints[f.name], value[f.name]) for f in fields(kind) if f.name in value})
+    if kind == dict[str, Joint]:
+        return {name: _build(Joint, joint) for name, joint in value.items()}
+    return tuple(value) if isinstance(value, list) else value

@@ -1,0 +1,321 @@
+"""BabbleReach: reach a target around an obstacle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import gymnasium
+import numpy as np
+
+from gym_babble import _core
+from gym_babble.envs.task import RENDER_MODES, ReachChoices
+from gym_babble.scenarios import apply_options
+from gym_babble.spaces import as_actions, need_reset
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from gym_babble.config import BodyLike
+    from gym_babble.envs.window import Window
+
+__all__ = ["BabbleReachEnv"]
+
+
+class BabbleReachEnv(gymnasium.Env[Any, Any]):
+    """Reach a target around an obstacle with a simulated eye-arm-hand.
+
+    ## Description
+
+    The first model of Caligiore et al. (2008). An arm moves in a horizontal plane: upper arm 15 cm,
+    forearm 13 cm, a stretched hand of 11.6 cm that reaches with its fingertips. Muscles (Eq. 2) pull
+    shoulder and elbow towards equilibrium points with a time constant of 0.8 s. A vertical cylinder
+    stands halfway between the start and the target. An eye above the arm has turned to the red
+    target (Eq. 1, from pixels) and stays on it.
+
+    ## Action space
+
+    `Box(-1, 1, (2,), float32)`; its meaning depends on `control`:
+
+    | control | 0 | 1 | meaning |
+    | --- | --- | --- | --- |
+    | `delta_posture` | shoulder | elbow | ±1 = ±5° on the muscles' equilibrium points, clipped to the joint ranges |
+    | `posture` | shoulder | elbow | the equilibrium points, −1…1 over the joint ranges |
+    | `torque` | shoulder | elbow | T = action · 50 N·m − K_D q̇ |
+    | `pattern` | b1 | b2 | b = ½ + action/2, clipped to [.01, .99]: one whole movement of 11.2 s (Eq. 5, 6) |
+
+    Actions outside of [−1, 1] are clipped; NaN and infinity raise `ActionError`.
+
+    ## Observation space
+
+    `obs="senses"` is a Dict of:
+
+    | sense | size | low | high | unit |
+    | --- | --- | --- | --- | --- |
+    | `eye` | 2 | 0 | 1 | pan and tilt, share of range |
+    | `obstacle` | 2 | −π, −π/2 | π, π/2 | azimuth and elevation in the camera frame [rad]; lowest when there is none |
+    | `hand` | 2 | −π, −π/2 | π, π/2 | the same of the fingertip [rad] |
+    | `arm` | 2 | 0 | 1 | shoulder and elbow, share of range |
+    | `stretch` | 2 | −range | range | equilibrium point minus angle [rad] |
+    | `time` | 1 | 0 | 1 | share of the episode |
+
+    `"flat"` is the same in one Box(11,), in this order. `"goal"` is a Dict of `observation` (flat),
+    `achieved_goal` (fingertip) and `desired_goal` (target), (x, y) [m]. `"retina"` is the senses and
+    the eye's image, `retina_size` × `retina_size` × 3, uint8.
+
+    ## Rewards
+
+    - `progress` (terms progress + success + failure): decrease of the distance to the target over
+      10 cm, +1 for success, −1 for a collision or a joint limit. A return lies in (−8, 4).
+    - `sparse`: 1 for success, else 0.
+    - with `obs="goal"`: 0 within 2 cm of the target, else −1; `compute_reward` gives the same.
+
+    ## Starting state
+
+    The arm rests at the start of a babbled movement that was legal: target uniform in joint space,
+    start 8–25 cm from it in a uniform direction, b1 uniform in (.01, .99), drawn until the movement
+    (quasi-static) neither touches the obstacle nor leaves the joint ranges. Body `icub`: 10–20 cm.
+
+    ## Episode end
+
+    - `success` (terminated): first step with the fingertip within 2 cm of the target; with
+      `settled=True` also joint speeds below .05 rad/s. In `pattern` control only the end counts.
+    - `collision` (terminated): arm or hand touches the obstacle, at any moment within a step. With
+      `obs="goal"` the arm stands still until the time limit instead, since ending early would pay.
+    - `joint_limit` (terminated): in `pattern` control, the path asks for a posture outside of the
+      joint ranges.
+    - `timeout`: truncated after 240 steps (12 s); in `pattern` control terminated, as every step.
+
+    ## Info
+
+    `is_success` (now), `ever_success` (in this episode), `outcome` (running, success, collision,
+    joint_limit, timeout), `reward_terms`.
+
+    ## Arguments
+
+    `reset(options=...)` takes `scenario` (see `gym_babble.scenarios`), or any of `start` (x, y),
+    `target` (x, y) and `obstacle` (x, y), (x, y, radius) or None [m]; what is not given is drawn.
+    Options hold for the resets that follow, until a reset that names others; `{}` names none.
+
+    ## Version history
+
+    - v0: first.
+    """
+
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": list(RENDER_MODES), "render_fps": 20}
+
+    def __init__(
+        self,
+        render_mode: str | None = None,
+        *,
+        obs: str = "senses",
+        control: str = "delta_posture",
+        reward: str = "progress",
+        body: BodyLike = "paper",
+        settled: bool = False,
+        max_episode_steps: int | None = None,
+        camera: str = "third_person",
+        width: int = 480,
+        height: int = 480,
+        retina_size: int = 84,
+    ) -> None:
+        """Makes the environment.
+
+        Args:
+            render_mode: "rgb_array", "rgb_array_list" (one frame a control step, also within a
+                movement in `pattern` control), "human" (needs the extra `human`), or None.
+            obs: "senses", "flat", "goal" or "retina".
+            control: "delta_posture", "posture", "torque" or "pattern".
+            reward: "progress" or "sparse"; "sparse" with obs="goal".
+            body: A profile ("paper", "icub"), the path of a TOML or JSON file, a dict of what
+                differs from a profile, or a `gym_babble.Config`.
+            settled: Whether success also needs the arm to have come to rest.
+            max_episode_steps: Time limit in control steps; 240, or 1 in `pattern` control.
+            camera: "third_person" or "eye".
+            width: Width of a picture [pixel].
+            height: Height of a picture [pixel].
+            retina_size: Edge of the eye's image in obs="retina" [pixel]; 630 is the paper's.
+
+        Raises:
+            ConfigError: An argument or a config field is not one there is.
+        """
+        self._arguments: dict[str, Any] = dict(
+            obs=obs,
+            control=control,
+            reward=reward,
+            body=body,
+            settled=settled,
+            max_episode_steps=max_episode_steps,
+            render_mode=render_mode,
+            camera=camera,
+            width=width,
+            height=height,
+            retina_size=retina_size,
+        )
+        self.render_mode = render_mode
+        self._choices = ReachChoices(**self._arguments)
+        self._batch = _core.Batch(self._choices.task, 1)
+        self.observation_space = self._choices.observation_space
+        self.action_space = self._choices.action_space
+        self.metadata = {**type(self).metadata, "render_fps": self._choices.render_fps}
+        self._ready = False
+        self._seeded = False
+        self._shown = 0
+        self._window: Window | None = None
+
+    @property
+    def choices(self) -> ReachChoices:
+        """What this environment was made with."""
+        return self._choices
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Any, dict[str, Any]]:
+        """Begins a new episode.
+
+        Args:
+            seed: Starts the stream of cases anew.
+            options: See the class.
+
+        Raises:
+            ConfigError: An option is unknown.
+            ScenarioError: The case asked for cannot be played.
+        """
+        super().reset(seed=seed)
+        if seed is not None or not self._seeded:
+            self._batch.seed(0, int(self.np_random.integers(2**63)))
+            self._seeded = True
+        if options is not None:
+            apply_options(self._batch, 0, self._choices.task, options)
+        self._batch.reset()
+        self._ready = True
+        self._shown = 0
+        observation, _, _, _, info = self._look()
+        if self.render_mode == "human":
+            self._show()
+        return observation, info
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        """One control step, or one whole movement in `pattern` control.
+
+        Raises:
+            ActionError: The action is NaN, infinite or of a wrong shape or type.
+            gymnasium.error.ResetNeeded: The episode has ended, or never began.
+        """
+        self._batch.step_one(as_actions(action, (2,)))
+        result = self._look()
+        if self.render_mode == "human":
+            self._show()
+        return result
+
+    def _look(self) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        choices = self._choices
+        senses, reward, terminated, truncated, outcome, success, ever, terms = self._batch.one()
+        goals = self._batch.one_goals() if choices.obs == "goal" else []
+        retina = self._retina() if choices.obs == "retina" else None
+        info = {
+            "is_success": success,
+            "ever_success": ever,
+            "outcome": choices.spec.outcomes[outcome],
+            "reward_terms": dict(zip(choices.spec.reward_terms, terms, strict=True)),
+        }
+        return choices.observation(senses, goals, retina), reward, terminated, truncated, info
+
+    def _retina(self) -> NDArray[np.uint8]:
+        size = self._choices.retina_size
+        return self._batch.render(0, "eye", size, size)
+
+    def compute_reward(self, achieved_goal: Any, desired_goal: Any, info: Any) -> Any:
+        """Reward of the goal form for goals (2,) or (n, 2) [m]; `info` is not used."""
+        del info
+        achieved = np.asarray(achieved_goal, np.float32)
+        desired = np.asarray(desired_goal, np.float32)
+        rewards = self._choices.task.goal_reward(
+            np.atleast_2d(achieved), np.atleast_2d(desired)
+        )
+        return float(rewards[0]) if achieved.ndim == 1 else rewards
+
+    def render(self) -> Any:
+        """A frame (height, width, 3), or the frames since the last call, one a control step.
+
+        In "human" mode the window shows each step by itself and nothing is returned.
+
+        Raises:
+            gymnasium.error.ResetNeeded: There was no reset yet.
+        """
+        if self.render_mode is None:
+            gymnasium.logger.warn(
+                "render() was called without a render_mode; make the environment with one, "
+                'e.g. gymnasium.make("BabbleReach-v0", render_mode="rgb_array")'
+            )
+            return None
+        if not self._ready:
+            raise need_reset()
+        if self.render_mode == "human":
+            return self._show()
+        if self.render_mode == "rgb_array":
+            return self._frame(None)
+        return self._new_frames()
+
+    def _new_frames(self) -> list[NDArray[np.uint8]]:
+        end = len(self._batch.trail(0))
+        frames = [self._frame(k) for k in range(self._shown, end)]
+        self._shown = end
+        return frames
+
+    def _frame(self, moment: int | None) -> NDArray[np.uint8]:
+        width, height = self._choices.size
+        return self._batch.render(0, self._choices.camera, width, height, moment)
+
+    def _show(self) -> None:
+        if self._window is None:
+            from gym_babble.envs.window import Window
+
+            self._window = Window(self._choices.size, self._choices.render_fps)
+        for frame in self._new_frames():
+            self._window.show(frame)
+
+    def close(self) -> None:
+        """Closes the window, if there is one."""
+        if self._window is not None:
+            self._window.close()
+            self._window = None
+
+    def get_state(self) -> bytes:
+        """The whole state, from which `set_state` continues bit for bit."""
+        return self._batch.save(0)
+
+    def set_state(self, state: bytes) -> None:
+        """Continues from a state of an environment with the same arguments.
+
+        Raises:
+            SnapshotError: The bytes are not such a state; the environment is as it was.
+        """
+        self._batch.load(0, state)
+        self._ready = self._seeded = True
+        self._shown = len(self._batch.trail(0))
+
+    def state_hash(self) -> int:
+        """A number that two states share only if they are the same to the bit."""
+        return self._batch.state_hash(0)
+
+    @property
+    def scenario(self) -> dict[str, Any]:
+        """Start, target and obstacle of the running episode [m], as `reset` options."""
+        return self._batch.case(0)
+
+    @property
+    def trajectory(self) -> NDArray[np.float64]:
+        """The way of the fingertip since the reset (k, 2) [m]; recorded with a render_mode."""
+        return self._batch.trail(0)
+
+    def __getstate__(self) -> dict[str, Any]:
+        hidden = ("_batch", "_choices", "_window")
+        state = {k: v for k, v in self.__dict__.items() if k not in hidden}
+        return {"attributes": state, "core": self.get_state()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state["attributes"])
+        self._choices = ReachChoices(**self._arguments)
+        self._batch = _core.Batch(self._choices.task, 1)
+        self._batch.load(0, state["core"])
+        self._window = None

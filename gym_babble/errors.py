@@ -1,0 +1,47 @@
+"""Exceptions, each also a builtin that one would expect.
+
+`gymnasium.error.ResetNeeded` is raised, as by Gymnasium itself, for a step outside of an episode.
+"""
+
+__all__ = [
+    "ActionError",
+    "AgentFileError",
+    "BabbleError",
+    "ConfigError",
+    "MissingExtraError",
+    "ScenarioError",
+    "SnapshotError",
+]
+
+
+class BabbleError(Exception):
+    """Base of all exceptions of this package."""
+
+
+class ConfigError(BabbleError, ValueError):
+    """A config field or option is unknown, of a wrong type or out of bounds."""
+
+
+class ActionError(BabbleError, ValueError):
+    """An action is NaN, infinite or of a wrong shape or type. Nothing was stepped."""
+
+
+class ScenarioError(BabbleError, ValueError):
+    """A case asked for cannot be played."""
+
+
+class SnapshotError(BabbleError, ValueError):
+    """Bytes are not a state of this environment. The environment is as it was."""
+
+
+class AgentFileError(BabbleError, ValueError):
+    """A file is not a learned agent of this package."""
+
+
+class MissingExtraError(BabbleError, ImportError):
+    """An optional dependency is not installed."""
+
+    def __init__(self, module: str, extra: str) -> None:
+        super().__init__(
+            f"{module} is not installed; install it with: pip install 'gym-babble[{extra}]'"
+        )

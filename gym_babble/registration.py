@@ -1,0 +1,51 @@
+"""The registered environments: one table and one loop."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import gymnasium
+
+__all__ = ["ENVIRONMENTS", "Registered", "register_all"]
+
+
+@dataclass(frozen=True)
+class Registered:
+    """One row of the table."""
+
+    id: str
+    obs: str
+    control: str
+    reward: str
+    max_episode_steps: int
+    reward_threshold: float
+    """Mean return at which the task counts as solved: success in about nine cases of ten."""
+
+    @property
+    def kwargs(self) -> dict[str, Any]:
+        """The choices this id stands for; each can be overridden in `make`."""
+        return {"obs": self.obs, "control": self.control, "reward": self.reward}
+
+
+ENVIRONMENTS = (
+    Registered("BabbleReach-v0", "senses", "delta_posture", "progress", 240, 2.2),
+    Registered("BabbleReachSparse-v0", "senses", "delta_posture", "sparse", 240, 0.9),
+    Registered("BabbleReachGoal-v0", "goal", "delta_posture", "sparse", 240, -120.0),
+    Registered("BabbleReachPattern-v0", "senses", "pattern", "sparse", 1, 0.9),
+)
+
+
+def register_all() -> None:
+    """Registers every environment with Gymnasium; again is harmless."""
+    for row in ENVIRONMENTS:
+        if row.id in gymnasium.registry:
+            continue
+        gymnasium.register(
+            id=row.id,
+            entry_point="gym_babble.envs:BabbleReachEnv",
+            vector_entry_point="gym_babble.envs:BabbleReachVectorEnv",
+            reward_threshold=row.reward_threshold,
+            max_episode_steps=row.max_episode_steps,
+            kwargs=row.kwargs,
+        )

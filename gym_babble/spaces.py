@@ -1,0 +1,133 @@
+"""Gymnasium spaces from the core's spec, and the senses in an observation."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from gymnasium import spaces
+from gymnasium.error import ResetNeeded
+
+from gym_babble.errors import ActionError, ConfigError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from gym_babble._core import Task
+
+__all__ = ["OBSERVATIONS", "Entry", "Spec", "as_actions", "observation_space"]
+
+OBSERVATIONS = ("senses", "flat", "goal", "retina")
+MIN_RETINA, MAX_RETINA = 36, 2048
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A named group of numbers."""
+
+    name: str
+    labels: tuple[str, ...]
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    unit: str
+    description: str
+
+    @property
+    def box(self) -> spaces.Box:
+        """The space of these numbers."""
+        return spaces.Box(
+            np.array(self.low, np.float32), np.array(self.high, np.float32), dtype=np.float32
+        )
+
+
+@dataclass(frozen=True)
+class Spec:
+    """The core's description of observations and actions."""
+
+    senses: tuple[Entry, ...]
+    goals: tuple[Entry, ...]
+    action: Entry
+    reward_terms: tuple[str, ...]
+    outcomes: tuple[str, ...]
+    max_episode_steps: int
+    control_hz: float
+    slices: tuple[tuple[str, slice], ...]
+    """Where each sense stands in the flat observation."""
+
+    @classmethod
+    def of(cls, task: Task) -> Spec:
+        """The spec of a task."""
+        raw = json.loads(task.spec())
+        senses = tuple(_entry(entry) for entry in raw["senses"])
+        ends = np.cumsum([len(entry.labels) for entry in senses]).tolist()
+        starts = [0, *ends[:-1]]
+        return cls(
+            senses=senses,
+            goals=tuple(_entry(entry) for entry in raw["goals"]),
+            action=_entry(raw["action"]),
+            reward_terms=tuple(raw["reward_terms"]),
+            outcomes=tuple(raw["outcomes"]),
+            max_episode_steps=raw["max_episode_steps"],
+            control_hz=raw["control_hz"],
+            slices=tuple(
+                (entry.name, slice(start, end))
+                for entry, start, end in zip(senses, starts, ends, strict=True)
+            ),
+        )
+
+    @property
+    def flat(self) -> spaces.Box:
+        """The space of the flat observation."""
+        low = np.concatenate([entry.box.low for entry in self.senses])
+        high = np.concatenate([entry.box.high for entry in self.senses])
+        return spaces.Box(low, high, dtype=np.float32)
+
+
+def _entry(raw: dict[str, Any]) -> Entry:
+    return Entry(**{k: tuple(v) if isinstance(v, list) else v for k, v in raw.items()})
+
+
+def observation_space(spec: Spec, obs: str, retina_size: int) -> spaces.Space[Any]:
+    """The observation space for a value of `obs=`.
+
+    Raises:
+        ConfigError: `obs` or `retina_size` is not one there is.
+    """
+    if obs == "flat":
+        return spec.flat
+    if obs == "senses":
+        return spaces.Dict({entry.name: entry.box for entry in spec.senses})
+    if obs == "goal":
+        goals = {entry.name: entry.box for entry in spec.goals}
+        return spaces.Dict({"observation": spec.flat, **goals})
+    if obs == "retina":
+        if not MIN_RETINA <= retina_size <= MAX_RETINA:
+            raise ConfigError(f"retina_size = {retina_size} is not in [{MIN_RETINA}, {MAX_RETINA}]")
+        image = spaces.Box(0, 255, (retina_size, retina_size, 3), np.uint8)
+        senses = {entry.name: entry.box for entry in spec.senses}
+        return spaces.Dict({**senses, "retina": image})
+    raise ConfigError(f"obs = {obs!r} is not one of {', '.join(OBSERVATIONS)}")
+
+
+def as_actions(action: Any, shape: tuple[int, ...]) -> NDArray[np.float32]:
+    """An action as a float32 array of `shape`.
+
+    Raises:
+        ActionError: The action has another shape, or is not made of real numbers.
+    """
+    if type(action) is np.ndarray and action.dtype == np.float32 and action.shape == shape:
+        return action
+    array = np.asarray(action)
+    if array.dtype.kind not in "fiu":
+        raise ActionError(f"action has dtype {array.dtype}, expected real numbers (float32)")
+    if array.shape != shape:
+        raise ActionError(f"action has shape {array.shape}, expected {shape}")
+    with np.errstate(over="ignore"):
+        return array.astype(np.float32)
+
+
+def need_reset() -> ResetNeeded:
+    """The exception for looking at an environment before its first reset."""
+    return ResetNeeded("call reset() before step() or render()")

@@ -1,0 +1,258 @@
+//! Kinematics of the two joints that move in reaching.
+//!
+//! The hand is rigid, so the arm is a planar chain of the upper arm and one link from the elbow to
+//! the fingertips.
+
+use nalgebra::Vector2;
+
+use crate::config::Body;
+use crate::error::BodyError;
+use crate::skeleton::{self, Part};
+
+/// A straight piece of the arm in the plane of motion, in the frame of its link \[m\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Segment {
+    /// Near end.
+    pub a: Vector2<f64>,
+    /// Far end.
+    pub b: Vector2<f64>,
+}
+
+/// The arm in its plane: lengths, ranges and outline.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanarArm {
+    /// Length of the upper arm \[m\].
+    pub upper: f64,
+    /// Distance from elbow to fingertip \[m\].
+    pub reach: f64,
+    /// Direction of the fingertip in the forearm's frame \[rad\]; 0 for a straight wrist.
+    pub tip_angle: f64,
+    /// Lower ends of the joint ranges \[rad\].
+    pub lower: [f64; 2],
+    /// Upper ends of the joint ranges \[rad\].
+    pub upper_limit: [f64; 2],
+    /// Half-width of every segment \[m\].
+    pub half_width: f64,
+    /// Outline of the upper arm, in the frame of the shoulder.
+    pub upper_segments: Vec<Segment>,
+    /// Outline of forearm and hand, in the frame of the elbow.
+    pub fore_segments: Vec<Segment>,
+    /// Largest distance of a point of forearm and hand from the elbow \[m\].
+    pub fore_radius: f64,
+}
+
+const TOLERANCE_M: f64 = 1e-9;
+
+/// Where the arm is in its plane for a posture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Placement {
+    /// Position of the elbow \[m\].
+    pub elbow: Vector2<f64>,
+    /// Position of the fingertip \[m\].
+    pub tip: Vector2<f64>,
+    /// (cos, sin) of the upper arm's direction.
+    pub upper_direction: Vector2<f64>,
+    /// (cos, sin) of the forearm's direction.
+    pub fore_direction: Vector2<f64>,
+}
+
+impl PlanarArm {
+    /// Derives the planar arm from the skeleton of `body`.
+    #[must_use]
+    pub fn new(body: &Body) -> Self {
+        let (bones, tip) = skeleton::bones(body, &skeleton::posture(&body.joints, [0.0, 0.0]));
+        let elbow = Vector2::new(body.arm.upper_arm_m, 0.0);
+        let outline = |of_upper_arm: bool, origin: Vector2<f64>| {
+            let own = bones
+                .iter()
+                .filter(|bone| (bone.part == Part::UpperArm) == of_upper_arm);
+            let flat = own.map(|bone| Segment {
+                a: bone.a.xy() - origin,
+                b: bone.b.xy() - origin,
+            });
+            // A bone that stands upright is a point of its neighbours.
+            merge(
+                flat.filter(|segment| (segment.b - segment.a).norm() > TOLERANCE_M)
+                    .collect(),
+            )
+        };
+        let fore_segments = outline(false, elbow);
+        let tip = tip.xy() - elbow;
+        let range = |name: &str| {
+            let joint = &body.joints[name];
+            (joint.lower_deg.to_radians(), joint.upper_deg.to_radians())
+        };
+        let ((shoulder_low, shoulder_high), (elbow_low, elbow_high)) =
+            (range("shoulder"), range("elbow"));
+        Self {
+            upper: body.arm.upper_arm_m,
+            reach: tip.norm(),
+            tip_angle: libm::atan2(tip.y, tip.x),
+            lower: [shoulder_low, elbow_low],
+            upper_limit: [shoulder_high, elbow_high],
+            half_width: body.arm.half_width_m,
+            upper_segments: outline(true, Vector2::zeros()),
+            fore_radius: fore_segments
+                .iter()
+                .map(|s| s.a.norm().max(s.b.norm()))
+                .fold(0.0, f64::max),
+            fore_segments,
+        }
+    }
+
+    /// The elbow must stay on one side, so that inverse kinematics has one branch (item 3).
+    pub(crate) fn validate(&self) -> Result<(), BodyError> {
+        let (low, high) = (
+            self.lower[1] + self.tip_angle,
+            self.upper_limit[1] + self.tip_angle,
+        );
+        if low < 0.0 || high > std::f64::consts::PI {
+            return Err(BodyError::Geometry {
+                problem: format!(
+                    "the elbow's range puts the fingertip at {:.1}…{:.1}° from the upper arm; it must stay in \
+                     0…180°, or inverse kinematics has two branches",
+                    low.to_degrees(),
+                    high.to_degrees()
+                ),
+            });
+        }
+        Ok(())
+    }
+
+    /// Forward kinematics of posture `q` \[rad\].
+    #[must_use]
+    pub fn place(&self, q: [f64; 2]) -> Placement {
+        let (s1, c1) = libm::sincos(q[0]);
+        let (s12, c12) = libm::sincos(q[0] + q[1]);
+        let elbow = Vector2::new(self.upper * c1, self.upper * s1);
+        let fore_direction = Vector2::new(c12, s12);
+        let (st, ct) = if self.tip_angle == 0.0 {
+            (0.0, 1.0)
+        } else {
+            libm::sincos(self.tip_angle)
+        };
+        let tip = elbow
+            + rotate(
+                Vector2::new(self.reach * ct, self.reach * st),
+                fore_direction,
+            );
+        Placement {
+            elbow,
+            tip,
+            upper_direction: Vector2::new(c1, s1),
+            fore_direction,
+        }
+    }
+
+    /// Position of the fingertip for posture `q`.
+    #[must_use]
+    pub fn fingertip(&self, q: [f64; 2]) -> Vector2<f64> {
+        self.place(q).tip
+    }
+
+    /// Inverse kinematics: the posture that puts the fingertip at `point`, or none where the arm is
+    /// too short or too long. The joint ranges are not looked at; the shoulder's angle is the one
+    /// nearest to the middle of its range.
+    #[must_use]
+    pub fn posture_at(&self, point: Vector2<f64>) -> Option<[f64; 2]> {
+        let (l1, l2) = (self.upper, self.reach);
+        let cos_elbow = (point.norm_squared() - l1 * l1 - l2 * l2) / (2.0 * l1 * l2);
+        if cos_elbow.is_nan() || cos_elbow.abs() > 1.0 {
+            return None;
+        }
+        let sin_elbow = (1.0 - cos_elbow * cos_elbow).sqrt();
+        let elbow = libm::atan2(sin_elbow, cos_elbow) - self.tip_angle;
+        // Angle of the point minus angle of the fingertip at shoulder 0, in one arctangent.
+        let (along, across) = (l1 + l2 * cos_elbow, l2 * sin_elbow);
+        let shoulder = libm::atan2(
+            point.y * along - point.x * across,
+            point.x * along + point.y * across,
+        );
+        Some([self.nearest_turn(shoulder), elbow])
+    }
+
+    /// Whether posture `q` lies inside the joint ranges.
+    #[must_use]
+    pub fn in_range(&self, q: [f64; 2]) -> bool {
+        (0..2).all(|i| self.lower[i] <= q[i] && q[i] <= self.upper_limit[i])
+    }
+
+    /// `q` moved into the joint ranges.
+    #[must_use]
+    pub fn clamp(&self, q: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|i| q[i].clamp(self.lower[i], self.upper_limit[i]))
+    }
+
+    /// `q` as shares of the joint ranges.
+    #[must_use]
+    pub fn normalised(&self, q: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|i| (q[i] - self.lower[i]) / (self.upper_limit[i] - self.lower[i]))
+    }
+
+    /// The posture at the given shares of the joint ranges.
+    #[must_use]
+    pub fn denormalised(&self, share: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|i| self.lower[i] + share[i] * (self.upper_limit[i] - self.lower[i]))
+    }
+
+    /// Greatest distance of the fingertip from the shoulder \[m\].
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.upper + self.reach
+    }
+
+    fn nearest_turn(&self, angle: f64) -> f64 {
+        use std::f64::consts::{PI, TAU};
+        let middle = 0.5 * (self.lower[0] + self.upper_limit[0]);
+        if angle < middle - PI {
+            angle + TAU
+        } else if angle > middle + PI {
+            angle - TAU
+        } else {
+            angle
+        }
+    }
+}
+
+/// `v` turned by the angle whose (cos, sin) is `direction`.
+pub(crate) fn rotate(v: Vector2<f64>, direction: Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(
+        v.x * direction.x - v.y * direction.y,
+        v.x * direction.y + v.y * direction.x,
+    )
+}
+
+/// Joins segments that lie on one line and touch; the stretched arm becomes one segment a link.
+fn merge(mut segments: Vec<Segment>) -> Vec<Segment> {
+    let mut merged: Vec<Segment> = Vec::new();
+    while let Some(mut segment) = segments.pop() {
+        while let Some(i) = segments
+            .iter()
+            .position(|other| union(&segment, other).is_some())
+        {
+            let other = segments.swap_remove(i);
+            segment = union(&segment, &other).unwrap_or(segment);
+        }
+        merged.push(segment);
+    }
+    merged
+}
+
+/// The segment that covers both, if they are collinear and touch.
+fn union(s: &Segment, t: &Segment) -> Option<Segment> {
+    let direction = (s.b - s.a).normalize();
+    let off_line = |p: Vector2<f64>| direction.perp(&(p - s.a)).abs() > TOLERANCE_M;
+    if off_line(t.a) || off_line(t.b) {
+        return None;
+    }
+    let at = |p: Vector2<f64>| direction.dot(&(p - s.a));
+    let (s_low, s_high) = (0.0, at(s.b));
+    let (t_low, t_high) = (at(t.a).min(at(t.b)), at(t.a).max(at(t.b)));
+    if t_low > s_high + TOLERANCE_M || t_high < s_low - TOLERANCE_M {
+        return None;
+    }
+    Some(Segment {
+        a: s.a + direction * s_low.min(t_low),
+        b: s.a + direction * s_high.max(t_high),
+    })
+}

@@ -1,0 +1,206 @@
+//! Motion of the arm's two joints under its muscles, Eq. 2.
+//!
+//! The arm is light beside the muscles' damping, so the equation is stiff: an explicit step
+//! diverges even at half a millisecond. With position and velocity taken at the end of the step,
+//!
+//! (M + dt·K_D + dt²·K_P) Δv = dt (K_P (q_des − q) − K_D v − dt·K_P v − C)
+//!
+//! is stable at any step. M is the arm's inertia, C its Coriolis and centrifugal torque; gravity is
+//! compensated (Sect. II-B).
+
+use crate::arm::PlanarArm;
+use crate::config::{Body, Muscles};
+use crate::skeleton::{self, Part};
+
+/// Posture and joint speeds of the arm.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct ArmState {
+    /// Joint angles \[rad\].
+    pub q: [f64; 2],
+    /// Joint speeds \[rad/s\].
+    pub v: [f64; 2],
+}
+
+impl ArmState {
+    /// At rest in posture `q`.
+    #[must_use]
+    pub const fn at_rest(q: [f64; 2]) -> Self {
+        Self { q, v: [0.0; 2] }
+    }
+}
+
+/// Inertia of the two links about their joints.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inertia {
+    /// Moment of the upper arm about the shoulder \[kg·m²\].
+    pub upper: f64,
+    /// Moment of forearm and hand about the elbow \[kg·m²\].
+    pub fore: f64,
+    /// Mass of forearm and hand \[kg\].
+    pub fore_mass: f64,
+    /// Mass of the upper arm \[kg\].
+    pub upper_mass: f64,
+    /// Centre of mass of the upper arm along its length \[m\].
+    pub upper_centre: f64,
+    /// Centre of mass of forearm and hand in the forearm's frame \[m\].
+    pub fore_centre: [f64; 2],
+}
+
+/// The equations of motion of one body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dynamics {
+    muscles: Muscles,
+    inertia: Inertia,
+    upper_length: f64,
+    lower: [f64; 2],
+    upper: [f64; 2],
+}
+
+impl Dynamics {
+    /// Equations of motion of `body`.
+    #[must_use]
+    pub fn new(body: &Body, arm: &PlanarArm) -> Self {
+        Self {
+            muscles: body.muscles,
+            inertia: inertia(body),
+            upper_length: arm.upper,
+            lower: arm.lower,
+            upper: arm.upper_limit,
+        }
+    }
+
+    /// Masses and moments, for references and exporters.
+    #[must_use]
+    pub const fn inertia(&self) -> &Inertia {
+        &self.inertia
+    }
+
+    /// One step of `dt` \[s\] towards the equilibrium point `q_des` \[rad\].
+    #[inline]
+    #[must_use]
+    pub fn step(&self, state: ArmState, q_des: [f64; 2], dt: f64) -> ArmState {
+        let (mass, coriolis) = self.mass_and_coriolis(state);
+        let Muscles { kp, kd, .. } = self.muscles;
+        let rhs = [0, 1].map(|i| {
+            dt * (kp * (q_des[i] - state.q[i]) - (kd + dt * kp) * state.v[i] - coriolis[i])
+        });
+        self.advance(state, mass, dt * kd + dt * dt * kp, rhs, dt)
+    }
+
+    /// One step of `dt` \[s\] under the joint torques T = `torque` − K_D q̇ \[N·m\].
+    #[inline]
+    #[must_use]
+    pub fn step_torque(&self, state: ArmState, torque: [f64; 2], dt: f64) -> ArmState {
+        let (mass, coriolis) = self.mass_and_coriolis(state);
+        let kd = self.muscles.kd;
+        let rhs = [0, 1].map(|i| dt * (torque[i] - kd * state.v[i] - coriolis[i]));
+        self.advance(state, mass, dt * kd, rhs, dt)
+    }
+
+    /// Kinetic energy \[J\].
+    #[must_use]
+    pub fn kinetic_energy(&self, state: ArmState) -> f64 {
+        let ([m11, m12, m22], _) = self.mass_and_coriolis(state);
+        let [v1, v2] = state.v;
+        0.5 * (m11 * v1 * v1 + 2.0 * m12 * v1 * v2 + m22 * v2 * v2)
+    }
+
+    /// M as (M11, M12, M22) and C.
+    #[inline]
+    fn mass_and_coriolis(&self, state: ArmState) -> ([f64; 3], [f64; 2]) {
+        let Inertia {
+            upper,
+            fore,
+            fore_mass,
+            fore_centre: [cx, cy],
+            ..
+        } = self.inertia;
+        let lever = fore_mass * self.upper_length;
+        let (s, c) = libm::sincos(state.q[1]);
+        let coupling = lever * (cx * c - cy * s);
+        let h = -lever * (cx * s + cy * c);
+        let m11 = upper + fore + fore_mass * self.upper_length * self.upper_length + 2.0 * coupling;
+        let [v1, v2] = state.v;
+        (
+            [m11, fore + coupling, fore],
+            [h * (2.0 * v1 * v2 + v2 * v2), -h * v1 * v1],
+        )
+    }
+
+    #[inline]
+    fn advance(
+        &self,
+        state: ArmState,
+        mass: [f64; 3],
+        diagonal: f64,
+        rhs: [f64; 2],
+        dt: f64,
+    ) -> ArmState {
+        let [a, b, d] = [mass[0] + diagonal, mass[1], mass[2] + diagonal];
+        let determinant = a * d - b * b;
+        let dv = [
+            (d * rhs[0] - b * rhs[1]) / determinant,
+            (a * rhs[1] - b * rhs[0]) / determinant,
+        ];
+        let mut next = ArmState {
+            q: state.q,
+            v: [state.v[0] + dv[0], state.v[1] + dv[1]],
+        };
+        for i in 0..2 {
+            next.q[i] += dt * next.v[i];
+            // Inelastic stops at the ends of the joint ranges.
+            if next.q[i] < self.lower[i] || next.q[i] > self.upper[i] {
+                next.q[i] = next.q[i].clamp(self.lower[i], self.upper[i]);
+                next.v[i] = 0.0;
+            }
+        }
+        next
+    }
+}
+
+/// Sums the bones as solid rods of the body's density; the palm is as high as it is.
+fn inertia(body: &Body) -> Inertia {
+    let (bones, _) = skeleton::bones(body, &skeleton::posture(&body.joints, [0.0, 0.0]));
+    let radius = body.arm.half_width_m;
+    let mut total = Inertia {
+        upper: 0.0,
+        fore: 0.0,
+        fore_mass: 0.0,
+        upper_mass: 0.0,
+        upper_centre: 0.0,
+        fore_centre: [0.0; 2],
+    };
+    let elbow = nalgebra::Vector2::new(body.arm.upper_arm_m, 0.0);
+    for bone in bones {
+        let origin = if bone.part == Part::UpperArm {
+            nalgebra::Vector2::zeros()
+        } else {
+            elbow
+        };
+        let (a, b) = (bone.a.xy() - origin, bone.b.xy() - origin);
+        let section = match bone.part {
+            Part::Palm => 2.0 * radius * body.hand.palm_height_m,
+            // A digit's radius is bounded by the spacing of the fingers.
+            Part::Digit => {
+                std::f64::consts::PI * radius.min(0.4 * body.hand.finger_spacing_m).powi(2)
+            }
+            Part::UpperArm | Part::Forearm => std::f64::consts::PI * radius * radius,
+        };
+        let mass = body.arm.density_kg_m3 * section * (bone.b - bone.a).norm();
+        let moment = mass
+            * ((a.norm_squared() + a.dot(&b) + b.norm_squared()) / 3.0 + radius * radius / 4.0);
+        let centre = (a + b) / 2.0;
+        if bone.part == Part::UpperArm {
+            total.upper += moment;
+            total.upper_mass += mass;
+            total.upper_centre = centre.x;
+        } else {
+            total.fore += moment;
+            total.fore_centre[0] += mass * centre.x;
+            total.fore_centre[1] += mass * centre.y;
+            total.fore_mass += mass;
+        }
+    }
+    total.fore_centre = total.fore_centre.map(|moment| moment / total.fore_mass);
+    total
+}

@@ -1,0 +1,148 @@
+//! Clearance between the whole arm and the vertical cylinder, without gaps in time.
+//!
+//! Arm and hand stay inside the cylinder's height, so the distance in space is the distance in the
+//! plane of motion.
+
+use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
+
+use crate::arm::{Placement, PlanarArm, Segment, rotate};
+
+/// A vertical cylinder through the plane of motion.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Obstacle {
+    /// Where its axis meets the plane \[m\].
+    pub centre: Vector2<f64>,
+    /// Its radius \[m\].
+    pub radius: f64,
+}
+
+impl Obstacle {
+    /// Distance between the surfaces of obstacle and arm in posture `q` \[m\]; negative inside.
+    #[must_use]
+    pub fn clearance(&self, arm: &PlanarArm, q: [f64; 2]) -> f64 {
+        self.clearance_at(arm, &arm.place(q))
+    }
+
+    /// [`Self::clearance`] for an arm whose placement is known.
+    #[must_use]
+    pub fn clearance_at(&self, arm: &PlanarArm, placement: &Placement) -> f64 {
+        let upper = least_distance_squared(
+            &arm.upper_segments,
+            unrotate(self.centre, placement.upper_direction),
+        );
+        let fore = least_distance_squared(
+            &arm.fore_segments,
+            unrotate(self.centre - placement.elbow, placement.fore_direction),
+        );
+        upper.min(fore).sqrt() - self.radius - arm.half_width
+    }
+
+    /// First share in [0, 1] of the straight joint motion `from` → `to` at which the arm touches,
+    /// to within a micrometre of clearance; none if it passes.
+    ///
+    /// `clearance` is the clearance at `from`. A point of the arm moves by at most L on the way, so
+    /// clearances d0 and d1 at the ends with d0 + d1 > L leave room for no touch in between;
+    /// otherwise the halves are looked at (conservative advancement).
+    #[must_use]
+    pub fn first_touch(
+        &self,
+        arm: &PlanarArm,
+        from: [f64; 2],
+        to: [f64; 2],
+        clearance: f64,
+    ) -> Option<f64> {
+        if clearance <= 0.0 {
+            return Some(0.0);
+        }
+        self.touch_between(
+            arm,
+            (from, clearance),
+            (to, self.clearance(arm, to)),
+            (0.0, 1.0),
+        )
+    }
+
+    fn touch_between(
+        &self,
+        arm: &PlanarArm,
+        (from, d0): ([f64; 2], f64),
+        (to, d1): ([f64; 2], f64),
+        (s0, s1): (f64, f64),
+    ) -> Option<f64> {
+        const RESOLUTION_M: f64 = 1e-6;
+        let length = sweep(arm, from, to);
+        if d0 + d1 > length {
+            return None;
+        }
+        if length < RESOLUTION_M {
+            return (d1 <= 0.0).then_some(s1);
+        }
+        let middle = [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])];
+        let (d, s) = (self.clearance(arm, middle), 0.5 * (s0 + s1));
+        let first = self.touch_between(arm, (from, d0), (middle, d), (s0, s));
+        if first.is_some() || d <= 0.0 {
+            return first.or(Some(s));
+        }
+        self.touch_between(arm, (middle, d), (to, d1), (s, s1))
+    }
+}
+
+/// The most that any point of the arm can move between two postures \[m\].
+#[inline]
+#[must_use]
+pub fn sweep(arm: &PlanarArm, from: [f64; 2], to: [f64; 2]) -> f64 {
+    (to[0] - from[0]).abs() * (arm.upper + arm.fore_radius)
+        + (to[1] - from[1]).abs() * arm.fore_radius
+}
+
+fn unrotate(v: Vector2<f64>, direction: Vector2<f64>) -> Vector2<f64> {
+    rotate(v, Vector2::new(direction.x, -direction.y))
+}
+
+fn least_distance_squared(segments: &[Segment], point: Vector2<f64>) -> f64 {
+    segments
+        .iter()
+        .map(|segment| distance_squared(segment, point))
+        .fold(f64::INFINITY, f64::min)
+}
+
+fn distance_squared(segment: &Segment, point: Vector2<f64>) -> f64 {
+    let along = segment.b - segment.a;
+    let to_point = point - segment.a;
+    let share = (to_point.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+    (to_point - along * share).norm_squared()
+}
+
+/// Watches a moving arm for its first touch of an obstacle.
+///
+/// Holds a lower bound of the clearance that shrinks by what the arm may have moved; distances are
+/// queried only when the bound is used up.
+#[derive(Debug, Clone, Copy)]
+pub struct ContactWatch {
+    obstacle: Option<Obstacle>,
+    bound: f64,
+}
+
+impl ContactWatch {
+    /// A watch over `obstacle`, if there is one, from posture `q` on.
+    #[must_use]
+    pub fn new(obstacle: Option<Obstacle>, arm: &PlanarArm, q: [f64; 2]) -> Self {
+        let bound = obstacle.map_or(f64::INFINITY, |obstacle| obstacle.clearance(arm, q));
+        Self { obstacle, bound }
+    }
+
+    /// Looks at the straight joint motion `from` → `to`: the share of it at which the arm first
+    /// touches, or none.
+    #[inline]
+    pub fn touch(&mut self, arm: &PlanarArm, from: [f64; 2], to: [f64; 2]) -> Option<f64> {
+        self.bound -= sweep(arm, from, to);
+        if self.bound > 0.0 {
+            return None;
+        }
+        let obstacle = self.obstacle?;
+        let touch = obstacle.first_touch(arm, from, to, obstacle.clearance(arm, from));
+        self.bound = obstacle.clearance(arm, to);
+        touch
+    }
+}

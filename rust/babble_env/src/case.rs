@@ -1,0 +1,280 @@
+//! Start, target and obstacle of one episode.
+
+use babble_body::Obstacle;
+use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
+
+use crate::error::EnvError;
+use crate::movement::{Fidelity, MovementPath};
+use crate::stream::Stream;
+use crate::task::ReachTask;
+
+/// How often a case is drawn before the config is called impossible.
+const MAX_TRIES: u32 = 100_000;
+
+/// One case of the reaching task.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ReachCase {
+    /// Joint angles at the start \[rad\].
+    pub start: [f64; 2],
+    /// Position of the fingertip at the start \[m\].
+    pub hand: [f64; 2],
+    /// Position of the target \[m\].
+    pub target: [f64; 2],
+    /// The obstacle, if there is one.
+    pub obstacle: Option<Obstacle>,
+}
+
+impl ReachCase {
+    /// The case of a movement between two points, with the obstacle halfway between them.
+    ///
+    /// None where a point is out of reach, or where the arm would touch the obstacle at either end.
+    #[must_use]
+    pub fn between(task: &ReachTask, hand: Vector2<f64>, target: Vector2<f64>) -> Option<Self> {
+        let posture = |point| task.arm.posture_at(point).filter(|&q| task.arm.in_range(q));
+        let (start, end) = (posture(hand)?, posture(target)?);
+        let obstacle = Obstacle {
+            centre: (hand + target) / 2.0,
+            radius: task.config.body.obstacle.radius_m,
+        };
+        let clear = |q| obstacle.clearance(&task.arm, q) > 0.0;
+        (clear(start) && clear(end)).then_some(Self {
+            start,
+            hand: hand.into(),
+            target: target.into(),
+            obstacle: Some(obstacle),
+        })
+    }
+
+    /// A case chosen by a person: any start, target and obstacle that can be played.
+    ///
+    /// # Errors
+    /// [`EnvError::Case`] naming the part that is out of reach, not finite or in the way.
+    pub fn chosen(
+        task: &ReachTask,
+        hand: [f64; 2],
+        target: [f64; 2],
+        obstacle: Option<Obstacle>,
+    ) -> Result<Self, EnvError> {
+        let start = posture_for(task, "start", hand)?;
+        posture_for(task, "target", target)?;
+        if let Some(obstacle) = obstacle {
+            check_obstacle(task, &obstacle, start)?;
+        }
+        Ok(Self {
+            start,
+            hand,
+            target,
+            obstacle,
+        })
+    }
+
+    /// A random geometry: target uniform in joint space, start in a uniform direction at a uniform
+    /// distance from it (\[C\], paper-model item 16).
+    ///
+    /// # Errors
+    /// [`EnvError::NoLegalCase`] when the config leaves no room for one.
+    pub fn draw_geometry(task: &ReachTask, stream: &mut Stream) -> Result<Self, EnvError> {
+        let [near, far] = task.config.reach.distance_m;
+        for _ in 0..MAX_TRIES {
+            let q = task
+                .arm
+                .denormalised([stream.uniform(0.0, 1.0), stream.uniform(0.0, 1.0)]);
+            let target = task.arm.fingertip(q);
+            let (sin, cos) = libm::sincos(stream.uniform(0.0, std::f64::consts::TAU));
+            let distance = stream.uniform(near, far);
+            let hand = target + Vector2::new(cos, sin) * distance;
+            if let Some(case) = Self::between(task, hand, target) {
+                return Ok(case);
+            }
+        }
+        Err(EnvError::NoLegalCase { tries: MAX_TRIES })
+    }
+
+    /// The case of a babbled movement that was legal: geometry and b1 are drawn until one is.
+    ///
+    /// Such a case can be solved, as those of the paper's test set can.
+    ///
+    /// # Errors
+    /// [`EnvError::NoLegalCase`] when the config leaves no room for one.
+    pub fn draw_legal(
+        task: &ReachTask,
+        stream: &mut Stream,
+        fidelity: Fidelity,
+    ) -> Result<Self, EnvError> {
+        for _ in 0..MAX_TRIES {
+            let case = Self::draw_geometry(task, stream)?;
+            let [low, high] = task.config.reach.b_range;
+            let b1 = stream.uniform(low, high);
+            if MovementPath::new(task, &case, [b1, 1.0 - b1])?.is_legal(task, &case, fidelity) {
+                return Ok(case);
+            }
+        }
+        Err(EnvError::NoLegalCase { tries: MAX_TRIES })
+    }
+
+    /// Distance from start to target \[m\].
+    #[must_use]
+    pub fn distance(&self) -> f64 {
+        (Vector2::from(self.target) - Vector2::from(self.hand)).norm()
+    }
+}
+
+fn posture_for(
+    task: &ReachTask,
+    what: &'static str,
+    point: [f64; 2],
+) -> Result<[f64; 2], EnvError> {
+    let problem = |problem: String| EnvError::Case { what, problem };
+    if !point.iter().all(|x| x.is_finite()) {
+        return Err(problem(format!("{point:?} is not finite")));
+    }
+    let q = task.arm.posture_at(point.into()).ok_or_else(|| {
+        problem(format!(
+            "{point:?} m is out of the arm's reach of {:.3} m",
+            task.arm.length()
+        ))
+    })?;
+    if task.arm.in_range(q) {
+        return Ok(q);
+    }
+    let [shoulder, elbow] = q.map(f64::to_degrees);
+    Err(problem(format!(
+        "{point:?} m needs shoulder {shoulder:.1}° and elbow {elbow:.1}°, outside of the joint ranges"
+    )))
+}
+
+fn check_obstacle(task: &ReachTask, obstacle: &Obstacle, start: [f64; 2]) -> Result<(), EnvError> {
+    let problem = |problem: String| EnvError::Case {
+        what: "obstacle",
+        problem,
+    };
+    if !(obstacle.centre.iter().all(|x| x.is_finite()) && (1e-4..=1.0).contains(&obstacle.radius)) {
+        return Err(problem(format!(
+            "centre {:?} m and radius {} m must be finite and the radius in [0.0001, 1]",
+            obstacle.centre.as_slice(),
+            obstacle.radius
+        )));
+    }
+    let clearance = obstacle.clearance(&task.arm, start);
+    if clearance <= 0.0 {
+        return Err(problem(format!(
+            "the arm at the start is {:.4} m inside of it",
+            -clearance
+        )));
+    }
+    Ok(())
+}
+
+/// What a user asks of the cases to come. What is not asked for is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct CaseRequest {
+    /// Position of the fingertip at the start \[m\].
+    pub start: Option<[f64; 2]>,
+    /// Position of the target \[m\].
+    pub target: Option<[f64; 2]>,
+    /// The obstacle, or that there is none.
+    pub obstacle: ObstacleRequest,
+}
+
+/// What a user asks of the obstacle.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub enum ObstacleRequest {
+    /// Halfway between start and target.
+    #[default]
+    Halfway,
+    /// None.
+    Absent,
+    /// This one.
+    At(Obstacle),
+}
+
+impl CaseRequest {
+    /// The next case that fulfils the request.
+    ///
+    /// # Errors
+    /// [`EnvError::Case`] for a part that cannot be played, [`EnvError::NoLegalCase`] when the rest
+    /// cannot be drawn.
+    pub fn draw(&self, task: &ReachTask, stream: &mut Stream) -> Result<ReachCase, EnvError> {
+        let case = match (self.start, self.target) {
+            (None, None) => ReachCase::draw_legal(task, stream, Fidelity::QuasiStatic)?,
+            (Some(start), Some(target)) => return self.both_given(task, start, target),
+            (start, target) => draw_other_end(task, stream, start, target)?,
+        };
+        match self.obstacle {
+            ObstacleRequest::Halfway => Ok(case),
+            ObstacleRequest::Absent => Ok(ReachCase {
+                obstacle: None,
+                ..case
+            }),
+            ObstacleRequest::At(obstacle) => {
+                ReachCase::chosen(task, case.hand, case.target, Some(obstacle))
+            }
+        }
+    }
+
+    fn both_given(
+        &self,
+        task: &ReachTask,
+        start: [f64; 2],
+        target: [f64; 2],
+    ) -> Result<ReachCase, EnvError> {
+        let halfway = || Obstacle {
+            centre: (Vector2::from(start) + Vector2::from(target)) / 2.0,
+            radius: task.config.body.obstacle.radius_m,
+        };
+        let obstacle = match self.obstacle {
+            ObstacleRequest::Halfway => Some(halfway()),
+            ObstacleRequest::Absent => None,
+            ObstacleRequest::At(obstacle) => Some(obstacle),
+        };
+        ReachCase::chosen(task, start, target, obstacle)
+    }
+}
+
+/// Draws the end that was not given, at a uniform direction and distance from the one that was.
+fn draw_other_end(
+    task: &ReachTask,
+    stream: &mut Stream,
+    start: Option<[f64; 2]>,
+    target: Option<[f64; 2]>,
+) -> Result<ReachCase, EnvError> {
+    let (what, given) = match (start, target) {
+        (Some(start), _) => ("start", start),
+        (None, target) => ("target", target.unwrap_or_default()),
+    };
+    posture_for(task, what, given)?;
+    let [near, far] = task.config.reach.distance_m;
+    let given = Vector2::from(given);
+    for _ in 0..MAX_TRIES {
+        let (sin, cos) = libm::sincos(stream.uniform(0.0, std::f64::consts::TAU));
+        let other = given + Vector2::new(cos, sin) * stream.uniform(near, far);
+        let (hand, target) = if start.is_some() {
+            (given, other)
+        } else {
+            (other, given)
+        };
+        let [low, high] = task.config.reach.b_range;
+        let b1 = stream.uniform(low, high);
+        let Some(case) = ReachCase::between(task, hand, target) else {
+            continue;
+        };
+        if MovementPath::new(task, &case, [b1, 1.0 - b1])?.is_legal(
+            task,
+            &case,
+            Fidelity::QuasiStatic,
+        ) {
+            return Ok(case);
+        }
+    }
+    Err(EnvError::NoLegalCase { tries: MAX_TRIES })
+}
+
+/// The config's obstacle with its axis through a point of the plane \[m\].
+#[must_use]
+pub fn obstacle_at(task: &ReachTask, centre: [f64; 2]) -> Obstacle {
+    Obstacle {
+        centre: centre.into(),
+        radius: task.config.body.obstacle.radius_m,
+    }
+}

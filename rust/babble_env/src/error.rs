@@ -1,0 +1,96 @@
+use babble_body::BodyError;
+use babble_brain::BrainError;
+
+/// What can go wrong with a task, an episode or a batch.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EnvError {
+    /// The config has an unknown field, a wrong type or a value out of bounds.
+    #[error("config: {field}: {problem}")]
+    Config {
+        /// Path of the field, as in `body.arm.upper_arm_m`.
+        field: String,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// The body of the config is not possible.
+    #[error("config: body.{0}")]
+    Body(#[from] BodyError),
+    /// An option is not one of its values.
+    #[error("{option} = {value:?} is not one of {known}")]
+    Option {
+        /// Name of the option.
+        option: &'static str,
+        /// The value given.
+        value: String,
+        /// The values there are.
+        known: String,
+    },
+    /// A number of an option is out of bounds.
+    #[error("{option} = {value} is out of bounds: {bound}")]
+    OutOfBounds {
+        /// Name of the option.
+        option: &'static str,
+        /// The value given.
+        value: String,
+        /// What it must be.
+        bound: String,
+    },
+    /// An action is NaN or infinite. Nothing was stepped.
+    #[error("action[{env}][{index}] = {value}: actions must be finite")]
+    ActionNotFinite {
+        /// Which environment of the batch.
+        env: usize,
+        /// Which number of its action.
+        index: usize,
+        /// The value given.
+        value: f32,
+    },
+    /// Actions do not have the shape of the action space. Nothing was stepped.
+    #[error("actions hold {got} numbers, expected {expected}")]
+    ActionShape {
+        /// Numbers given.
+        got: usize,
+        /// Numbers expected.
+        expected: usize,
+    },
+    /// A step before a reset or after the end of the episode. Nothing was stepped.
+    #[error("environment {env} needs a reset before it can step")]
+    NeedsReset {
+        /// Which environment of the batch.
+        env: usize,
+    },
+    /// The case asked for cannot be played.
+    #[error("{what}: {problem}")]
+    Case {
+        /// Which part of the case.
+        what: &'static str,
+        /// Why not.
+        problem: String,
+    },
+    /// No case could be drawn: the config leaves no room for one.
+    #[error(
+        "no legal movement in {tries} tries: this config leaves no room between arm, obstacle and joint ranges"
+    )]
+    NoLegalCase {
+        /// How many were tried.
+        tries: u32,
+    },
+    /// The bytes are not a snapshot of this environment.
+    #[error("snapshot: {problem}")]
+    Snapshot {
+        /// What is wrong with them.
+        problem: String,
+    },
+    /// A parameter of the pattern generators is out of bounds.
+    #[error(transparent)]
+    Brain(#[from] BrainError),
+    /// Threads could not be started.
+    #[error("cannot start {threads} threads: {problem}")]
+    Threads {
+        /// How many were asked for.
+        threads: usize,
+        /// What the system said.
+        problem: String,
+    },
+}

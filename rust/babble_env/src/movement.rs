@@ -1,0 +1,214 @@
+//! One whole movement along the path of the pattern generators (Sect. III-A).
+
+use babble_body::ArmState;
+use babble_brain::TimeBaseGenerator;
+use nalgebra::Vector2;
+
+use crate::case::ReachCase;
+use crate::error::EnvError;
+use crate::options::Outcome;
+use crate::task::ReachTask;
+
+/// How a movement is simulated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fidelity {
+    /// Muscles and inertia: the arm lags behind the posture asked for.
+    Full,
+    /// The arm is always in the posture asked for.
+    QuasiStatic,
+}
+
+/// How a movement ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Movement {
+    /// Success, collision, joint limit or timeout.
+    pub outcome: Outcome,
+    /// When it ended \[s\].
+    pub time_s: f64,
+    /// The arm at that moment.
+    pub arm: ArmState,
+}
+
+/// The postures asked for, one a control period.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MovementPath {
+    /// Joint angles \[rad\], up to the first that leaves the joint ranges.
+    postures: Vec<[f64; 2]>,
+    /// Whether the path left the joint ranges after the last of `postures`.
+    violates: bool,
+}
+
+impl MovementPath {
+    /// Path of the movement with parameters b = (b1, b2): Eq. 5, placed by Eq. 6, turned into
+    /// postures by inverse kinematics.
+    ///
+    /// # Errors
+    /// [`EnvError::Brain`] for b outside of (0, 1).
+    pub fn new(task: &ReachTask, case: &ReachCase, b: [f64; 2]) -> Result<Self, EnvError> {
+        let generator = TimeBaseGenerator::new(b[0], b[1], task.config.reach.movement_s)?;
+        let mut curve = vec![[0.0; 2]; task.config.reach.movement_steps()];
+        generator.sample_into(&mut curve);
+        let mut path = Self {
+            postures: Vec::with_capacity(curve.len()),
+            violates: false,
+        };
+        for c in curve {
+            let point = babble_brain::generator::place(case.hand, case.target, c);
+            match task
+                .arm
+                .posture_at(point.into())
+                .filter(|&q| task.arm.in_range(q))
+            {
+                Some(q) => path.postures.push(q),
+                None => {
+                    path.violates = true;
+                    break;
+                }
+            }
+        }
+        Ok(path)
+    }
+
+    /// Whether the movement neither touches the obstacle nor asks for a posture outside of the
+    /// joint ranges. The ranges are looked at first, as they cost no simulation.
+    #[must_use]
+    pub fn is_legal(&self, task: &ReachTask, case: &ReachCase, fidelity: Fidelity) -> bool {
+        !self.violates
+            && match fidelity {
+                Fidelity::Full => self.simulate(task, case, |_| {}).outcome != Outcome::Collision,
+                Fidelity::QuasiStatic => self.first_touch(task, case).is_none(),
+            }
+    }
+
+    /// The movement in the given fidelity; whichever of collision and joint limit comes first in
+    /// time ends it. `each` is called with the arm at the end of every control period.
+    pub fn play(
+        &self,
+        task: &ReachTask,
+        case: &ReachCase,
+        fidelity: Fidelity,
+        each: impl FnMut(&ArmState),
+    ) -> Movement {
+        match fidelity {
+            Fidelity::Full => self.simulate(task, case, each),
+            Fidelity::QuasiStatic => self.follow(task, case, each),
+        }
+    }
+
+    fn simulate(
+        &self,
+        task: &ReachTask,
+        case: &ReachCase,
+        mut each: impl FnMut(&ArmState),
+    ) -> Movement {
+        let period = task.config.reach.control_period_s;
+        let mut arm = ArmState::at_rest(case.start);
+        let mut watch = task.watch(case.obstacle, arm.q);
+        for (k, &q_des) in self.postures.iter().enumerate() {
+            if task.advance(&mut arm, &mut watch, |state, dt| {
+                task.dynamics.step(state, q_des, dt)
+            }) {
+                each(&arm);
+                return Movement {
+                    outcome: Outcome::Collision,
+                    time_s: (k + 1) as f64 * period,
+                    arm,
+                };
+            }
+            each(&arm);
+        }
+        let moved_s = self.postures.len() as f64 * period;
+        if self.violates {
+            return Movement {
+                outcome: Outcome::JointLimit,
+                time_s: moved_s,
+                arm,
+            };
+        }
+        let q_des = self.postures.last().copied().unwrap_or(case.start);
+        let settle = task.settle_steps();
+        for k in 0..settle {
+            if task.advance(&mut arm, &mut watch, |state, dt| {
+                task.dynamics.step(state, q_des, dt)
+            }) {
+                each(&arm);
+                let time_s = moved_s + (k + 1) as f64 * period;
+                return Movement {
+                    outcome: Outcome::Collision,
+                    time_s,
+                    arm,
+                };
+            }
+            each(&arm);
+        }
+        let time_s = moved_s + settle as f64 * period;
+        Movement {
+            outcome: task.end_of_movement(case, arm.q),
+            time_s,
+            arm,
+        }
+    }
+
+    fn follow(
+        &self,
+        task: &ReachTask,
+        case: &ReachCase,
+        mut each: impl FnMut(&ArmState),
+    ) -> Movement {
+        let period = task.config.reach.control_period_s;
+        let touch = self.first_touch(task, case);
+        let played = touch.map_or(self.postures.len(), |k| k + 1);
+        for &q in &self.postures[..played] {
+            each(&ArmState::at_rest(q));
+        }
+        let q = self.postures[..played]
+            .last()
+            .copied()
+            .unwrap_or(case.start);
+        let outcome = if touch.is_some() {
+            Outcome::Collision
+        } else if self.violates {
+            Outcome::JointLimit
+        } else {
+            task.end_of_movement(case, q)
+        };
+        Movement {
+            outcome,
+            time_s: played as f64 * period,
+            arm: ArmState::at_rest(q),
+        }
+    }
+
+    /// Index of the first posture on the way to which the arm touches the obstacle.
+    fn first_touch(&self, task: &ReachTask, case: &ReachCase) -> Option<usize> {
+        let mut watch = task.watch(case.obstacle, case.start);
+        let mut from = case.start;
+        self.postures.iter().position(|&to| {
+            let touch = watch.touch(&task.arm, from, to);
+            from = to;
+            touch.is_some()
+        })
+    }
+
+    /// The postures asked for \[rad\], up to the first outside of the joint ranges.
+    #[must_use]
+    pub fn postures(&self) -> &[[f64; 2]] {
+        &self.postures
+    }
+
+    /// The fingertip's desired positions \[m\], whether the arm can take them or not.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn desired(
+        task: &ReachTask,
+        case: &ReachCase,
+        b: [f64; 2],
+    ) -> Result<Vec<Vector2<f64>>, EnvError> {
+        let generator = TimeBaseGenerator::new(b[0], b[1], task.config.reach.movement_s)?;
+        let mut curve = vec![[0.0; 2]; task.config.reach.movement_steps()];
+        generator.sample_into(&mut curve);
+        let place = |c| babble_brain::generator::place(case.hand, case.target, c).into();
+        Ok(curve.into_iter().map(place).collect())
+    }
+}

@@ -1,0 +1,75 @@
+//! The choices a user makes when an environment is made, and the names of what comes out.
+
+use serde::{Deserialize, Serialize};
+
+use crate::choice::named_enum;
+
+/// Time limit of an episode in control steps; 240 are 12 s.
+pub const MAX_EPISODE_STEPS: u32 = 240;
+
+named_enum!(
+    /// What an action means.
+    Control, "control",
+    /// A change of the muscles' equilibrium points.
+    DeltaPosture = "delta_posture",
+    /// The muscles' equilibrium points themselves.
+    Posture = "posture",
+    /// Joint torques on top of the muscles' damping.
+    Torque = "torque",
+    /// Parameters (b1, b2) of one whole movement, the paper's action.
+    Pattern = "pattern"
+);
+
+named_enum!(
+    /// What is rewarded.
+    Reward, "reward",
+    /// Progress towards the target, +1 for success, −1 for a failure.
+    Progress = "progress",
+    /// 1 for success, else 0.
+    Sparse = "sparse"
+);
+
+named_enum!(
+    /// How an episode stands or ended.
+    Outcome, "outcome",
+    /// Not ended.
+    Running = "running",
+    /// The fingertip reached the target.
+    Success = "success",
+    /// The arm touched the obstacle.
+    Collision = "collision",
+    /// The posture asked for left the joint ranges.
+    JointLimit = "joint_limit",
+    /// The time was up.
+    Timeout = "timeout"
+);
+
+/// The choices a user makes when an environment is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Options {
+    /// Meaning of the action.
+    pub control: Control,
+    /// What is rewarded.
+    pub reward: Reward,
+    /// The goal form: reward −1/0, episodes run to their time limit.
+    pub goal: bool,
+    /// Whether success also needs the arm to have come to rest.
+    pub settled: bool,
+    /// Time limit in control steps; a movement in `pattern` control is one step.
+    pub max_episode_steps: u32,
+    /// Whether postures are recorded, for pictures.
+    pub record: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            control: Control::DeltaPosture,
+            reward: Reward::Progress,
+            goal: false,
+            settled: false,
+            max_episode_steps: MAX_EPISODE_STEPS,
+            record: false,
+        }
+    }
+}

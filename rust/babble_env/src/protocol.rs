@@ -1,0 +1,62 @@
+//! The paper's tests by name: the same cases for every agent.
+
+use nalgebra::Vector2;
+use rayon::prelude::*;
+
+use crate::case::ReachCase;
+use crate::error::EnvError;
+use crate::movement::Fidelity;
+use crate::pool::Pool;
+use crate::stream::{Purpose, Stream};
+use crate::task::ReachTask;
+
+/// Targets of Fig. 4.
+const FIG4_TARGETS: usize = 4;
+/// Starts around each target of Fig. 4.
+const FIG4_STARTS: usize = 36;
+
+/// Cases of Table I: legal movements drawn by the full simulation, as the paper drew its 1,000.
+/// Case i depends on `purpose`, `seed` and i alone.
+///
+/// # Errors
+/// [`EnvError::NoLegalCase`] when the config leaves no room.
+pub fn table1(
+    task: &ReachTask,
+    n: usize,
+    seed: u64,
+    purpose: Purpose,
+    pool: &mut Pool,
+) -> Result<Vec<ReachCase>, EnvError> {
+    pool.run(|| {
+        (0..n as u64)
+            .into_par_iter()
+            .map(|i| {
+                ReachCase::draw_legal(task, &mut Stream::new(purpose, seed, i), Fidelity::Full)
+            })
+            .collect()
+    })?
+}
+
+/// Cases of Fig. 4: 36 starts on a circle around each of 4 targets, obstacle halfway. Starts from
+/// which there is no case (out of reach, or the arm at either end touches the obstacle) are `None`.
+///
+/// The targets lie in the middle of the arm's work space at shares (⅓, ⅔) of the joint ranges; the
+/// radius is the middle of the config's range of distances \[C\], as the paper prints neither.
+#[must_use]
+pub fn fig4(task: &ReachTask) -> Vec<Option<ReachCase>> {
+    let [near, far] = task.config.reach.distance_m;
+    let radius = 0.5 * (near + far);
+    let start = |k: usize| {
+        let target = fig4_target(task, k / FIG4_STARTS);
+        let angle = std::f64::consts::TAU * (k % FIG4_STARTS) as f64 / FIG4_STARTS as f64;
+        let (sin, cos) = libm::sincos(angle);
+        ReachCase::between(task, target + Vector2::new(cos, sin) * radius, target)
+    };
+    (0..FIG4_TARGETS * FIG4_STARTS).map(start).collect()
+}
+
+fn fig4_target(task: &ReachTask, i: usize) -> Vector2<f64> {
+    let share = |bit: usize| if bit == 0 { 1.0 / 3.0 } else { 2.0 / 3.0 };
+    task.arm
+        .fingertip(task.arm.denormalised([share(i / 2), share(i % 2)]))
+}

@@ -1,0 +1,102 @@
+//! The state of an episode as bytes: magic, version, fingerprint of the task, state.
+
+use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::xxh3_64;
+
+use crate::error::EnvError;
+use crate::options::Options;
+use crate::reach::ReachState;
+use crate::task::ReachTask;
+
+const MAGIC: [u8; 4] = *b"BBRS";
+const VERSION: u16 = 1;
+
+#[derive(Serialize, Deserialize)]
+struct Header {
+    magic: [u8; 4],
+    version: u16,
+    /// A snapshot continues only under the config and options it was taken under.
+    task: u64,
+    /// Hash of the state's bytes.
+    body: u64,
+}
+
+/// Bytes of `state`.
+///
+/// # Errors
+/// Never for a state of this crate; the serializer's signature has it.
+pub fn save(task: &ReachTask, state: &ReachState) -> Result<Vec<u8>, EnvError> {
+    let body = postcard::to_stdvec(state).map_err(|error| problem(&error))?;
+    let header = Header {
+        magic: MAGIC,
+        version: VERSION,
+        task: fingerprint(task)?,
+        body: xxh3_64(&body),
+    };
+    let mut bytes = postcard::to_stdvec(&header).map_err(|error| problem(&error))?;
+    bytes.extend_from_slice(&body);
+    Ok(bytes)
+}
+
+/// The state in `bytes`.
+///
+/// # Errors
+/// [`EnvError::Snapshot`] for bytes that are cut short, altered, of another version, or of an
+/// environment with another config or other options.
+pub fn load(task: &ReachTask, bytes: &[u8]) -> Result<ReachState, EnvError> {
+    let (header, body): (Header, &[u8]) =
+        postcard::take_from_bytes(bytes).map_err(|error| problem(&error))?;
+    if header.magic != MAGIC {
+        return Err(refused(
+            "these bytes are not a snapshot of a reaching environment",
+        ));
+    }
+    if header.version != VERSION {
+        return Err(refused(&format!(
+            "version {} is not {VERSION}",
+            header.version
+        )));
+    }
+    if header.task != fingerprint(task)? {
+        return Err(refused("taken under another config or other options"));
+    }
+    if header.body != xxh3_64(body) {
+        return Err(refused("the bytes are cut short or altered"));
+    }
+    let (state, rest): (ReachState, &[u8]) =
+        postcard::take_from_bytes(body).map_err(|error| problem(&error))?;
+    if rest.is_empty() {
+        Ok(state)
+    } else {
+        Err(refused("bytes are left over"))
+    }
+}
+
+/// A number that two states share only if they are the same to the bit.
+///
+/// # Errors
+/// As [`save`].
+pub fn hash(task: &ReachTask, state: &ReachState) -> Result<u64, EnvError> {
+    Ok(xxh3_64(&save(task, state)?))
+}
+
+fn fingerprint(task: &ReachTask) -> Result<u64, EnvError> {
+    // Recording is for pictures and changes no episode.
+    let options = Options {
+        record: false,
+        ..task.options
+    };
+    let text = serde_json::to_string(&(&task.config, options))
+        .map_err(|error| refused(&error.to_string()))?;
+    Ok(xxh3_64(text.as_bytes()))
+}
+
+fn problem(error: &postcard::Error) -> EnvError {
+    refused(&error.to_string())
+}
+
+fn refused(problem: &str) -> EnvError {
+    EnvError::Snapshot {
+        problem: problem.to_owned(),
+    }
+}

@@ -1,0 +1,180 @@
+//! The Hebb agent's network and its babbling.
+
+use babble_agent::store::{self, Metadata};
+use babble_agent::{Babbling, HebbConfig, Variant};
+use babble_env::{Config, Pool, ReachTask};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+
+use crate::task::{Task, fidelity};
+use crate::{convert, errors};
+
+/// Experiences that are learnt together.
+const CHUNK: usize = 256;
+
+/// A network that learns by babbling.
+#[pyclass(module = "gym_babble._core")]
+#[derive(Debug)]
+pub(crate) struct Hebb {
+    hebb: babble_agent::Hebb,
+    babbling: Babbling,
+    pool: Pool,
+    seed: u64,
+    quasi_static: bool,
+}
+
+#[pymethods]
+impl Hebb {
+    /// A network that has learnt nothing; `config` is JSON, complete.
+    #[new]
+    fn new(config: &str, seed: u64, quasi_static: bool, threads: usize) -> PyResult<Self> {
+        let config: HebbConfig = serde_json::from_str(config)
+            .map_err(|error| errors::ConfigError::new_err(format!("agent config: {error}")))?;
+        Ok(Self {
+            hebb: babble_agent::Hebb::new(config).map_err(errors::agent)?,
+            babbling: Babbling::new(seed, fidelity(quasi_static)),
+            pool: Pool::new(threads).map_err(errors::env)?,
+            seed,
+            quasi_static,
+        })
+    }
+
+    /// The numbers of a variant, as JSON.
+    #[staticmethod]
+    fn variant_config(variant: &str) -> PyResult<String> {
+        let variant: Variant = variant.parse().map_err(errors::agent)?;
+        json(&HebbConfig::variant(variant))
+    }
+
+    /// Its numbers, as JSON.
+    fn config(&self) -> PyResult<String> {
+        json(self.hebb.config())
+    }
+
+    /// Babbles on `task` until `legal` more movements were legal, and learns from them.
+    fn learn(&mut self, py: Python<'_>, task: &Task, legal: usize) -> PyResult<()> {
+        let task: &ReachTask = &task.task;
+        py.detach(|| {
+            let experiences = self.babbling.experience(task, legal, &mut self.pool)?;
+            let hebb = &mut self.hebb;
+            self.pool.run(|| {
+                experiences
+                    .chunks(CHUNK)
+                    .try_for_each(|chunk| hebb.learn(chunk))
+            })?
+        })
+        .map_err(errors::agent)
+    }
+
+    /// Parameters b (n, 2) for senses (n, 11).
+    fn decide<'py>(
+        &self,
+        py: Python<'py>,
+        senses: PyReadonlyArray2<'py, f32>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let senses = convert::senses(&senses)?;
+        let decide = |s: &[f32; 11]| self.hebb.decide([s[0], s[1]], [s[2], s[3]]);
+        let b: Vec<[f64; 2]> = py
+            .detach(|| senses.iter().map(decide).collect::<Result<_, _>>())
+            .map_err(errors::agent)?;
+        convert::array2(py, &b)
+    }
+
+    /// Activity of the output map (ny, nx) for senses (11,).
+    fn recall<'py>(
+        &self,
+        py: Python<'py>,
+        senses: [f32; 11],
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let [e0, e1, o0, o1, ..] = senses;
+        let a = self
+            .hebb
+            .recall([e0, e1], [o0, o1])
+            .map_err(errors::agent)?;
+        let side = self.hebb.config().output_neurons;
+        PyArray1::from_vec(py, a).reshape([side, side])
+    }
+
+    /// The weights w_ji (`n_out`, `n_in`) and the running averages, as copies.
+    fn weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let w = self.hebb.weights();
+        let dict = PyDict::new(py);
+        let weights = PyArray1::from_slice(py, w.weights()).reshape([w.n_out(), w.n_in()])?;
+        dict.set_item("weights", weights)?;
+        dict.set_item("a_bar", PyArray1::from_slice(py, w.a_bar()))?;
+        dict.set_item("g_bar", PyArray1::from_slice(py, w.g_bar()))?;
+        Ok(dict)
+    }
+
+    /// Neurons along the axes of the input map.
+    fn input_shape(&self) -> Vec<usize> {
+        self.hebb.input_shape()
+    }
+
+    /// Movements babbled.
+    #[getter]
+    fn movements(&self) -> u64 {
+        self.babbling.movements()
+    }
+
+    /// How many of them were legal.
+    #[getter]
+    fn legal(&self) -> u64 {
+        self.babbling.legal()
+    }
+
+    /// Seed of the babbling.
+    #[getter]
+    fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Whether movements are simulated without the muscles' lag.
+    #[getter]
+    fn quasi_static(&self) -> bool {
+        self.quasi_static
+    }
+
+    /// The agent as the bytes of a safetensors file; `config` is the JSON of body and task.
+    fn save<'py>(&self, py: Python<'py>, config: &str) -> PyResult<Bound<'py, PyBytes>> {
+        let metadata = Metadata::new(
+            self.hebb.config().clone(),
+            Config::from_json(config).map_err(errors::env)?,
+            self.seed,
+            fidelity(self.quasi_static),
+            self.babbling.movements(),
+            self.babbling.legal(),
+        );
+        Ok(PyBytes::new(
+            py,
+            &store::save(&self.hebb, &metadata).map_err(errors::agent)?,
+        ))
+    }
+
+    /// The agent in the bytes of a safetensors file, and the JSON of the body and task it learnt on.
+    #[staticmethod]
+    fn load(bytes: &[u8], threads: usize) -> PyResult<(Self, String)> {
+        let (hebb, metadata) = store::load(bytes).map_err(errors::agent)?;
+        let Metadata {
+            seed,
+            quasi_static,
+            movements,
+            legal,
+            ..
+        } = metadata;
+        let agent = Self {
+            hebb,
+            babbling: Babbling::resume(seed, fidelity(quasi_static), movements, legal),
+            pool: Pool::new(threads).map_err(errors::env)?,
+            seed,
+            quasi_static,
+        };
+        Ok((agent, metadata.config.to_json().map_err(errors::env)?))
+    }
+}
+
+fn json(config: &HebbConfig) -> PyResult<String> {
+    serde_json::to_string(config)
+        .map_err(|error| pyo3::exceptions::PyRuntimeError::new_err(error.to_string()))
+}

@@ -22,4 +22,12 @@ pub enum EyeError {
         /// Number of search gazes tried after the start gaze.
         searched: usize,
     },
+    /// A buffer for a picture has the wrong length.
+    #[error("eye: buffer of {found} bytes for a picture of height x width x 3 = {expected} bytes")]
+    BufferSize {
+        /// Its length [byte].
+        found: usize,
+        /// What it must be [byte].
+        expected: usize,
+    },
 }

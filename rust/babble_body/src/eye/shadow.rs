@@ -1,0 +1,154 @@
+//! Shadows that solids cast on the ground: parallelograms and ellipses in its
+//! plane, drawn like any other surface.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::light::TOWARDS_KEY;
+use super::piece::{Cutter, Flat, Window, perpendicular};
+use super::raster::{Buffer, ellipse_interval, meet, rectangle_interval};
+use super::row::{Cone, Lens};
+use super::{Pinhole, Primitive, Shape};
+
+/// A patch of shadow on the ground.
+pub(super) struct Shadow {
+    window: Window,
+    flat: Flat,
+    /// For an ellipse.
+    cone: Option<Cone>,
+}
+
+impl Shadow {
+    /// Turns the pixels of the piece `lit` inside of the shadow into `dark`.
+    pub(super) fn draw(&self, buffer: &mut Buffer, lit: u32, dark: u32, lens: &Lens) {
+        let part = self.window.overlap(&buffer.window);
+        if part.is_empty() {
+            return;
+        }
+        for j in part.rows.0..part.rows.1 {
+            let y = lens.y(j);
+            let interval = match &self.cone {
+                Some(cone) => ellipse_interval(cone, y),
+                None => rectangle_interval(&self.flat, y),
+            };
+            let columns = meet(lens.columns(interval), part.columns);
+            if columns.0 < columns.1 {
+                for piece in buffer.span(j, columns).0 {
+                    *piece = if *piece == lit { dark } else { *piece };
+                }
+            }
+        }
+    }
+}
+
+/// Shadows of all solids of a scene on a ground at the given height.
+pub(super) fn cast(scene: &[Primitive], height: f64, cutter: &Cutter) -> Vec<Shadow> {
+    let mut caster = Caster::new(height, cutter);
+    for primitive in scene {
+        caster.cast(&primitive.shape);
+    }
+    caster.shadows
+}
+
+struct Caster<'a> {
+    cutter: &'a Cutter<'a>,
+    camera: &'a Pinhole,
+    height: f64,
+    /// Projection along the light into the horizontal, for vectors.
+    along_light: Matrix3<f64>,
+    towards_key: Vector3<f64>,
+    shadows: Vec<Shadow>,
+}
+
+impl<'a> Caster<'a> {
+    fn new(height: f64, cutter: &'a Cutter<'a>) -> Self {
+        let towards_key = Vector3::from(TOWARDS_KEY).normalize();
+        let drift = towards_key / towards_key.z;
+        let along_light = Matrix3::identity() - drift * Vector3::z().transpose();
+        Self {
+            cutter,
+            camera: cutter.camera,
+            height,
+            along_light,
+            towards_key,
+            shadows: Vec::new(),
+        }
+    }
+
+    fn cast(&mut self, shape: &Shape) {
+        match shape {
+            Shape::Sphere { centre, radius } => {
+                let half = perpendicular(&self.towards_key).map(|unit| unit * *radius);
+                self.ellipse(centre, half);
+            }
+            Shape::Capsule { a, b, radius } => {
+                let half = perpendicular(&self.towards_key).map(|unit| unit * *radius);
+                self.sweep(a, b, half);
+            }
+            Shape::Cylinder { a, b, radius } => {
+                if let Some(axis) = (b - a).try_normalize(0.0) {
+                    self.sweep(a, b, perpendicular(&axis).map(|unit| unit * *radius));
+                }
+            }
+            Shape::Cuboid {
+                centre,
+                rotation,
+                half_extents,
+            } => {
+                for k in 0..3 {
+                    let axis = rotation.column(k) * half_extents[k];
+                    let side = axis.dot(&self.towards_key).signum();
+                    let half =
+                        [(k + 1) % 3, (k + 2) % 3].map(|i| rotation.column(i) * half_extents[i]);
+                    self.parallelogram(&(centre + axis * side), half);
+                }
+            }
+            Shape::Ground { .. } => {}
+        }
+    }
+
+    /// Shadow of all that an ellipse sweeps on its way from a to b.
+    fn sweep(&mut self, a: &Vector3<f64>, b: &Vector3<f64>, half: [Vector3<f64>; 2]) {
+        self.ellipse(a, half);
+        self.ellipse(b, half);
+        let [u, v] = half.map(|axis| self.along_light * axis);
+        let way = self.along_light * (b - a);
+        // Half the width across the way: where the ellipse's edge is along it.
+        let (cosine, sine) = (cross_z(&u, &way), cross_z(&v, &way));
+        let norm = (cosine * cosine + sine * sine).sqrt();
+        if norm > 0.0 {
+            let across = (u * cosine + v * sine) / norm;
+            self.parallelogram(&(0.5 * (a + b)), [0.5 * (b - a), across]);
+        }
+    }
+
+    fn ellipse(&mut self, centre: &Vector3<f64>, half: [Vector3<f64>; 2]) {
+        self.patch(centre, half, true);
+    }
+
+    fn parallelogram(&mut self, centre: &Vector3<f64>, half: [Vector3<f64>; 2]) {
+        self.patch(centre, half, false);
+    }
+
+    fn patch(&mut self, centre: &Vector3<f64>, half: [Vector3<f64>; 2], round: bool) {
+        let above = centre.z - self.height;
+        if above < 0.0 {
+            return;
+        }
+        // Down the light by the height above the ground.
+        let foot = centre - self.towards_key * (above / self.towards_key.z);
+        let to_camera = self.camera.rotation;
+        let half = half.map(|axis| to_camera * (self.along_light * axis));
+        let centre = self.camera.camera_from_world(&foot);
+        let up = to_camera.column(2).into_owned();
+        if let Some(flat) = Flat::new(centre, half, up) {
+            let window = self.cutter.flat_window(&centre, half);
+            let cone = round.then(|| flat.cone());
+            self.shadows.push(Shadow { window, flat, cone });
+        }
+    }
+}
+
+/// The vertical component of a × b.
+fn cross_z(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
+    a.x * b.y - a.y * b.x
+}

@@ -1,6 +1,8 @@
 //! What the eye, and a person, sees of an episode.
 
-use babble_body::eye::{Gaze, Primitive, render_rgb, render_smooth, third_person};
+use babble_body::eye::{
+    Gaze, Pinhole, Primitive, is_red, render_rgb, render_smooth, third_person,
+};
 use babble_body::pose;
 use image::RgbImage;
 use nalgebra::Vector2;
@@ -55,9 +57,20 @@ pub fn picture(
                 .eye
                 .camera_sized(state.gaze, edge)
                 .middle(width as usize, height as usize);
-            render_rgb(&scene, &camera)
+            let mut image = render_rgb(&scene, &camera);
+            draw_target_on_top(&mut image, &scene[..1], &camera);
+            image
         }
     })
+}
+
+/// Nothing hides the target from the eye, so that an image's red pixels are those that its reflex
+/// saw ([`ReachTask::foveate`]).
+fn draw_target_on_top(image: &mut RgbImage, target: &[Primitive], camera: &Pinhole) {
+    let alone = render_rgb(target, camera);
+    for (pixel, red) in image.pixels_mut().zip(alone.pixels()).filter(|(_, p)| is_red(p.0)) {
+        *pixel = *red;
+    }
 }
 
 fn moment(state: &ReachState, frame: Option<usize>) -> Result<([f64; 2], &[[f64; 2]]), EnvError> {

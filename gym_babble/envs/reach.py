@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import gymnasium
-import numpy as np
 
 from gym_babble import _core
 from gym_babble.envs.task import RENDER_MODES, ReachChoices
@@ -13,6 +12,7 @@ from gym_babble.scenarios import apply_options
 from gym_babble.spaces import as_actions, need_reset
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
     from gym_babble.config import BodyLike
@@ -227,12 +227,7 @@ class BabbleReachEnv(gymnasium.Env[Any, Any]):
     def compute_reward(self, achieved_goal: Any, desired_goal: Any, info: Any) -> Any:
         """Reward of the goal form for goals (2,) or (n, 2) [m]; `info` is not used."""
         del info
-        achieved = np.asarray(achieved_goal, np.float32)
-        desired = np.asarray(desired_goal, np.float32)
-        rewards = self._choices.task.goal_reward(
-            np.atleast_2d(achieved), np.atleast_2d(desired)
-        )
-        return float(rewards[0]) if achieved.ndim == 1 else rewards
+        return self._choices.goal_reward(achieved_goal, desired_goal)
 
     def render(self) -> Any:
         """A frame (height, width, 3), or the frames since the last call, one a control step.

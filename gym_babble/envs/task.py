@@ -88,6 +88,13 @@ class ReachChoices:
             named["retina"] = retina  # type: ignore[assignment]
         return named
 
+    def goal_reward(self, achieved_goal: Any, desired_goal: Any) -> Any:
+        """Reward of the goal form for goals (2,) or (n, 2) [m]."""
+        achieved = np.asarray(achieved_goal, np.float32)
+        desired = np.asarray(desired_goal, np.float32)
+        rewards = self.task.goal_reward(np.atleast_2d(achieved), np.atleast_2d(desired))
+        return float(rewards[0]) if achieved.ndim == 1 else rewards
+
     @property
     def joint_range(self) -> NDArray[np.float64]:
         """Widths of the joint ranges (2,) [rad]."""

@@ -297,11 +297,16 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
         width, height = self._choices.size
         return self._batch.render(i, self._choices.camera, width, height, moment)
 
+    def compute_reward(self, achieved_goal: Any, desired_goal: Any, info: Any) -> Any:
+        """Reward of the goal form for goals (2,) or (n, 2) [m]; `info` is not used."""
+        del info
+        return self._choices.goal_reward(achieved_goal, desired_goal)
+
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
         """Calls a method, or gets an attribute, of each environment."""
         results = []
         for i in range(self.num_envs):
-            value = self._of_one(i, name)
+            value = self.of_one(i, name)
             results.append(value(*args, **kwargs) if callable(value) else value)
         return tuple(results)
 
@@ -328,7 +333,8 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
             values = values[0]
         setattr(self, name, values)
 
-    def _of_one(self, i: int, name: str) -> Any:
+    def of_one(self, i: int, name: str) -> Any:
+        """An attribute or method of environment i; what is not its own is the batch's."""
         if name in _OF_ONE:
             return _OF_ONE[name](self, i)
         if name == "observation_space":

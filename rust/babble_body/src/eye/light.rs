@@ -5,8 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 use super::Material;
 use super::piece::Quadric;
 
-/// Towards the key light, in world coordinates: from behind the body, left and above.
-pub(super) const TOWARDS_KEY: [f64; 3] = [-0.22, -0.42, 0.88];
+/// Direction towards the key light, in world coordinates: from behind the body, left and above.
+pub const TOWARDS_KEY: [f64; 3] = [-0.22, -0.42, 0.88];
 
 /// Light on a surface in the dark, turned downwards.
 const AMBIENT: f32 = 0.42;
@@ -28,7 +28,7 @@ pub fn is_red([red, green, blue]: [u8; 3]) -> bool {
 }
 
 /// The colour a material is painted with: targets clearly red, others clearly not.
-pub(super) fn pigment(material: &Material) -> [f32; 3] {
+pub(super) fn pigment(material: Material) -> [f32; 3] {
     let [red, green, blue] = material.colour.map(f32::from);
     if material.target {
         let red = red.max(200.0);
@@ -121,7 +121,7 @@ pub(super) struct Shaded {
 }
 
 impl Shaded {
-    pub(super) fn new(quadric: &Quadric, material: &Material, light: &Light) -> Self {
+    pub(super) fn new(quadric: &Quadric, material: Material, light: &Light) -> Self {
         // One direction to the camera for the whole surface: that of its middle.
         let to_camera = -(quadric.across * quadric.centre).normalize();
         let halfway = (light.towards_key + to_camera).normalize();

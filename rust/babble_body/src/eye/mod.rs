@@ -25,7 +25,7 @@ pub use camera::Pinhole;
 pub use centroid::red_centroid;
 pub use error::EyeError;
 pub use gaze::{Eye, EyeConfig, Gaze, GazeFrame};
-pub use light::is_red;
+pub use light::{TOWARDS_KEY, is_red};
 pub use raster::{Raster, rasterise};
 pub use scene::{Material, Primitive, Shape};
 pub use shading::{render_rgb, render_rgb_into, render_smooth};

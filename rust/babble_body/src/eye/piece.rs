@@ -198,10 +198,7 @@ impl<'a> Cutter<'a> {
             }
             Shape::Capsule { a, b, radius } => {
                 let (a, b) = self.ends(a, b);
-                let window = self.capsule_window(&a, &b, *radius);
-                self.side(primitive, window, [a, b], *radius);
-                self.ball(primitive, a, *radius);
-                self.ball(primitive, b, *radius);
+                self.capsule(primitive, [a, b], *radius);
             }
             Shape::Cylinder { a, b, radius } => {
                 let (a, b) = self.ends(a, b);
@@ -277,6 +274,15 @@ impl<'a> Cutter<'a> {
         }
     }
 
+    fn capsule(&mut self, primitive: usize, [a, b]: [Vector3<f64>; 2], radius: f64) {
+        let window = self.capsule_window(&a, &b, radius);
+        if distance_to_segment(&a, &b) > radius && !window.is_empty() {
+            self.side(primitive, window, [a, b], radius);
+            self.ball(primitive, a, radius);
+            self.ball(primitive, b, radius);
+        }
+    }
+
     fn cylinder(&mut self, primitive: usize, [a, b]: [Vector3<f64>; 2], radius: f64) {
         let Some(axis) = (b - a).try_normalize(0.0) else {
             return;
@@ -330,7 +336,7 @@ impl<'a> Cutter<'a> {
     }
 
     fn capsule_window(&self, a: &Vector3<f64>, b: &Vector3<f64>, radius: f64) -> Window {
-        if a.z.min(b.z) > radius {
+        if a.z.min(b.z) > radius || a.z.max(b.z) <= -radius {
             ball_window(&self.lens, a, radius).hull(&ball_window(&self.lens, b, radius))
         } else {
             Window::frame(&self.lens)
@@ -357,6 +363,18 @@ pub(super) fn perpendicular(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
     };
     let u = axis.cross(&helper).normalize();
     [u, axis.cross(&u)]
+}
+
+/// Distance of the origin to a segment.
+fn distance_to_segment(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
+    let way = b - a;
+    let square = way.norm_squared();
+    let share = if square > 0.0 {
+        (-a.dot(&way) / square).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    (a + way * share).norm()
 }
 
 /// Window of a ball: its tangent planes through the camera's right and up axes.

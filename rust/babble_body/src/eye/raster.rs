@@ -44,14 +44,14 @@ impl Buffer {
         for j in part.rows.0..part.rows.1 {
             match &piece.surface {
                 Surface::Ball(ball) => self.ball_row(id, ball, j, part.columns, lens),
-                Surface::Side(side, ends) => self.side_row(id, side, ends, j, part.columns, lens),
+                Surface::Side(side, ends) => self.side_row(id, (side, ends), j, part.columns, lens),
                 Surface::Rectangle(flat) => {
                     let interval = rectangle_interval(flat, lens.y(j));
-                    self.flat_row(id, &flat.w, interval, j, part.columns, lens);
+                    self.flat_row(id, (&flat.w, interval), j, part.columns, lens);
                 }
                 Surface::Ellipse(flat, cone) => {
                     let interval = ellipse_interval(cone, lens.y(j));
-                    self.flat_row(id, &flat.w, interval, j, part.columns, lens);
+                    self.flat_row(id, (&flat.w, interval), j, part.columns, lens);
                 }
             }
         }
@@ -69,25 +69,15 @@ impl Buffer {
     }
 
     fn ball_row(&mut self, id: u32, ball: &Quadric, j: usize, within: (usize, usize), lens: &Lens) {
-        let Some((row, columns)) = quadric_row(&ball.cone, j, within, lens) else {
-            return;
-        };
-        let (pieces, depths) = self.span(j, columns);
-        let mut column = columns.0 as i32 - row.origin;
-        for (piece, depth) in pieces.iter_mut().zip(depths) {
-            let w = row.inverse_depth(column as f32);
-            let nearer = w > *depth;
-            *depth = if nearer { w } else { *depth };
-            *piece = if nearer { id } else { *piece };
-            column += 1;
+        if let Some((row, columns)) = quadric_row(&ball.cone, j, within, lens) {
+            self.keep_nearer(id, j, columns, row.origin, |delta| row.inverse_depth(delta));
         }
     }
 
     fn side_row(
         &mut self,
         id: u32,
-        side: &Quadric,
-        ends: &Ends,
+        (side, ends): (&Quadric, &Ends),
         j: usize,
         within: (usize, usize),
         lens: &Lens,
@@ -95,44 +85,49 @@ impl Buffer {
         let Some((row, columns)) = quadric_row(&side.cone, j, within, lens) else {
             return;
         };
-        let [along, along_step] = lens.per_column(&ends.along, lens.y(j));
-        let along = along + along_step * row.origin as f32;
+        let [along, along_step] = lens.linear_about(&ends.along, lens.y(j), row.origin);
         let start = ends.start as f32;
-        let (pieces, depths) = self.span(j, columns);
-        let mut column = columns.0 as i32 - row.origin;
-        for (piece, depth) in pieces.iter_mut().zip(depths) {
-            let delta = column as f32;
+        self.keep_nearer(id, j, columns, row.origin, |delta| {
             let w = row.inverse_depth(delta);
             let place = along + along_step * delta - start * w;
-            let nearer = (w > *depth) & (place >= 0.0) & (place <= w);
-            *depth = if nearer { w } else { *depth };
-            *piece = if nearer { id } else { *piece };
-            column += 1;
-        }
+            if place >= 0.0 && place <= w { w } else { 0.0 }
+        });
     }
 
     fn flat_row(
         &mut self,
         id: u32,
-        w: &Vector3<f64>,
-        interval: [f64; 2],
+        (w, interval): (&Vector3<f64>, [f64; 2]),
         j: usize,
         within: (usize, usize),
         lens: &Lens,
     ) {
         let columns = meet(lens.columns(interval), within);
-        if columns.0 >= columns.1 {
-            return;
+        if columns.0 < columns.1 {
+            let [start, step] = lens.linear_about(w, lens.y(j), 0);
+            self.keep_nearer(id, j, columns, 0, |delta| start + step * delta);
         }
-        let [w_first, w_step] = lens.per_column(w, lens.y(j));
+    }
+
+    /// Draws a surface into columns of row j where it is nearer than what is
+    /// there. `inverse_depth` takes the number of columns from `origin`.
+    #[inline]
+    fn keep_nearer(
+        &mut self,
+        id: u32,
+        j: usize,
+        columns: (usize, usize),
+        origin: usize,
+        inverse_depth: impl Fn(f32) -> f32,
+    ) {
         let (pieces, depths) = self.span(j, columns);
-        let mut column = columns.0 as i32;
-        for (piece, depth) in pieces.iter_mut().zip(depths) {
-            let w = w_first + w_step * column as f32;
+        let first = columns.0 as f32 - origin as f32;
+        for (k, (piece, depth)) in (0_i32..).zip(pieces.iter_mut().zip(depths)) {
+            // Selected, not branched on, so that the loop runs in vectors.
+            let w = inverse_depth(first + k as f32);
             let nearer = w > *depth;
             *depth = if nearer { w } else { *depth };
             *piece = if nearer { id } else { *piece };
-            column += 1;
         }
     }
 }
@@ -155,7 +150,7 @@ pub(super) fn ellipse_interval(cone: &Cone, y: f64) -> [f64; 2] {
 /// A row of a quadric: w = l₀ + l₁ δ + √(D₀ + D₁ δ + D₂ δ²), δ counted from
 /// `origin`, a column near the middle of the row's visible part.
 struct QuadricRow {
-    origin: i32,
+    origin: usize,
     linear: [f32; 2],
     discriminant: [f32; 3],
 }
@@ -185,15 +180,10 @@ fn quadric_row(
     }
     // Independent of the window, so that a pixel has the same depth in each.
     let origin = usize::midpoint(seen.0, seen.1);
-    let [slope, offset] = along_row(&cone.linear, y);
-    let [d0, d1, d2] = lens.quadratic_about(discriminant, origin);
     let row = QuadricRow {
-        origin: origin as i32,
-        linear: [
-            (slope * lens.x(origin) + offset) as f32,
-            (slope / lens.focal_px) as f32,
-        ],
-        discriminant: [d0, d1, d2],
+        origin,
+        linear: lens.linear_about(&cone.linear, y, origin),
+        discriminant: lens.quadratic_about(discriminant, origin),
     };
     Some((row, columns))
 }

@@ -55,11 +55,12 @@ impl Lens {
         )
     }
 
-    /// A linear form along a row as (value at column 0, change per column).
-    pub(super) fn per_column(&self, form: &Vector3<f64>, y: f64) -> [f32; 2] {
+    /// A linear form along a row, as coefficients of (1, δ) in the number δ of
+    /// columns to the right of column i.
+    pub(super) fn linear_about(&self, form: &Vector3<f64>, y: f64, i: usize) -> [f32; 2] {
         let [slope, offset] = along_row(form, y);
         [
-            (slope * self.x(0) + offset) as f32,
+            (slope * self.x(i) + offset) as f32,
             (slope * self.pitch) as f32,
         ]
     }

@@ -198,10 +198,10 @@ impl Painter {
 }
 
 fn paint(piece: &Piece, primitive: &Primitive, light: &Light, brightness: f32) -> Paint {
-    let colour = pigment(&primitive.material);
+    let colour = pigment(primitive.material);
     match (&piece.surface, &primitive.shape) {
         (Surface::Ball(quadric) | Surface::Side(quadric, _), _) => {
-            Paint::Shaded(Box::new(Shaded::new(quadric, &primitive.material, light)))
+            Paint::Shaded(Box::new(Shaded::new(quadric, primitive.material, light)))
         }
         (
             Surface::Rectangle(flat),
@@ -234,18 +234,16 @@ fn run_length(pieces: &[u32]) -> usize {
 /// Shades a run of pixels of a ball or of a cylinder's side.
 fn shade(pixels: &mut [u8], shaded: &Shaded, depths: &[f32], first: usize, y: f64, lens: &Lens) {
     const BLOCK: usize = 32;
-    let cosines = shaded
-        .cosines
-        .each_ref()
-        .map(|cosine| (lens.per_column(&cosine.along, y), cosine.offset));
+    let cosines = shaded.cosines.each_ref().map(|cosine| {
+        let [start, step] = lens.linear_about(&cosine.along, y, first);
+        move |delta: f32, depth: f32| (start + step * delta) * depth - cosine.offset
+    });
     let mut light = [[0.0; 2]; BLOCK];
-    let mut column = first as i32;
+    let mut columns = 0_i32..;
     for (pixels, depths) in pixels.chunks_mut(3 * BLOCK).zip(depths.chunks(BLOCK)) {
-        for (light, w) in light.iter_mut().zip(depths) {
-            let (i, depth) = (column as f32, 1.0 / w);
-            *light = shaded
-                .at(cosines.map(|([start, step], offset)| (start + step * i) * depth - offset));
-            column += 1;
+        for ((light, w), delta) in light.iter_mut().zip(depths).zip(&mut columns) {
+            let depth = 1.0 / w;
+            *light = shaded.at(cosines.each_ref().map(|cosine| cosine(delta as f32, depth)));
         }
         for (pixel, [brightness, gloss]) in pixels.chunks_exact_mut(3).zip(light) {
             for (level, colour) in pixel.iter_mut().zip(shaded.colour) {

@@ -20,7 +20,8 @@ class Registered:
     reward: str
     max_episode_steps: int
     reward_threshold: float
-    """Mean return at which the task counts as solved: success in about nine cases of ten."""
+    """Mean return at which the task counts as solved: success in nine cases of ten (an oracle that
+    plays whole movements has a mean return of 2.66, 1, −168 and 1)."""
 
     @property
     def kwargs(self) -> dict[str, Any]:
@@ -29,7 +30,7 @@ class Registered:
 
 
 ENVIRONMENTS = (
-    Registered("BabbleReach-v0", "senses", "delta_posture", "progress", 240, 2.2),
+    Registered("BabbleReach-v0", "senses", "delta_posture", "progress", 240, 2.3),
     Registered("BabbleReachSparse-v0", "senses", "delta_posture", "sparse", 240, 0.9),
     Registered("BabbleReachGoal-v0", "goal", "delta_posture", "sparse", 240, -120.0),
     Registered("BabbleReachPattern-v0", "senses", "pattern", "sparse", 1, 0.9),

@@ -6,8 +6,8 @@ use rayon::prelude::*;
 
 use crate::error::AgentError;
 
-/// Movements that are babbled together.
-const CHUNK: u64 = 512;
+/// Movements that are babbled together; half of them on average are made in vain at the end.
+const CHUNK: u64 = 64;
 /// With fewer legal movements than one in this many, nothing can be learnt.
 const RAREST: u64 = 100_000;
 

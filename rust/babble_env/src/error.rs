@@ -14,7 +14,7 @@ pub enum EnvError {
         problem: String,
     },
     /// The body of the config is not possible.
-    #[error("config: body.{0}")]
+    #[error("config: in body: {0}")]
     Body(#[from] BodyError),
     /// An option is not one of its values.
     #[error("{option} = {value:?} is not one of {known}")]

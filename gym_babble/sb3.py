@@ -1,0 +1,201 @@
+"""The batch in the core behind stable-baselines3's VecEnv.
+
+>>> from stable_baselines3 import PPO
+>>> from gym_babble.sb3 import BabbleVecEnv
+>>> model = PPO("MultiInputPolicy", BabbleVecEnv("BabbleReach-v0", 128))
+"""
+
+from __future__ import annotations
+
+import time
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import gymnasium
+import numpy as np
+from gymnasium.vector import AutoresetMode
+
+from gym_babble.errors import ConfigError, MissingExtraError
+
+try:
+    from stable_baselines3.common.monitor import Monitor
+    from stable_baselines3.common.vec_env import VecEnv
+except ImportError as error:
+    raise MissingExtraError("stable-baselines3", "sb3") from error
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+    from stable_baselines3.common.vec_env.base_vec_env import (
+        VecEnvIndices,
+        VecEnvObs,
+        VecEnvStepReturn,
+    )
+
+__all__ = ["BabbleVecEnv"]
+
+
+class BabbleVecEnv(VecEnv):
+    """Many environments of one id, stepped together in the core.
+
+    It gives what a `DummyVecEnv` of the same environments, each in a `Monitor`, gives: environment
+    i seeded s is the single environment seeded s + i, an ended episode begins anew in the same step
+    with `terminal_observation`, `TimeLimit.truncated` and `episode` in its info, and options set by
+    `set_options` go to the next reset and hold for the episodes after it.
+
+    Args:
+        env_id: A registered id.
+        num_envs: How many environments.
+        env_kwargs: Further arguments of the environment and of its batch, e.g. `threads=1`.
+
+    Raises:
+        ConfigError: An argument is not one there is.
+    """
+
+    def __init__(
+        self, env_id: str = "BabbleReach-v0", num_envs: int = 1, **env_kwargs: Any
+    ) -> None:
+        env_kwargs.setdefault("autoreset_mode", AutoresetMode.SAME_STEP)
+        self.envs: Any = gymnasium.make_vec(env_id, num_envs=num_envs, **env_kwargs)
+        if self.envs.metadata["autoreset_mode"] is not AutoresetMode.SAME_STEP:
+            raise ConfigError("autoreset_mode: stable-baselines3 needs AutoresetMode.SAME_STEP")
+        super().__init__(
+            num_envs, self.envs.single_observation_space, self.envs.single_action_space
+        )
+        self.metadata = self.envs.metadata
+        self._held: list[dict[str, Any]] = [{} for _ in range(num_envs)]
+        self._actions: Any = None
+        self._returns = np.zeros(num_envs)
+        self._lengths = np.zeros(num_envs, np.int64)
+        self._began = time.time()
+
+    def reset(self) -> VecEnvObs:
+        """Begins new episodes, with what `seed` and `set_options` have set.
+
+        Raises:
+            ConfigError: An option is unknown.
+            ScenarioError: A case asked for cannot be played.
+        """
+        seeds, options = self._seeds, self._options
+        self._reset_seeds()
+        self._reset_options()
+        held = [
+            _as_scenario(new) if new else old for new, old in zip(options, self._held, strict=True)
+        ]
+        observation, infos = self.envs.reset(
+            seed=None if all(seed is None for seed in seeds) else seeds,
+            options={"scenario": held},
+        )
+        self._held = held
+        self._returns[:] = 0.0
+        self._lengths[:] = 0
+        self.reset_infos = _list_of_infos(infos, self.num_envs)
+        return observation  # type: ignore[no-any-return]
+
+    def step_async(self, actions: NDArray[Any]) -> None:
+        """Takes the actions of the next step (n, 2)."""
+        self._actions = actions
+
+    def step_wait(self) -> VecEnvStepReturn:
+        """One step of every environment; those that end begin anew.
+
+        Raises:
+            ActionError: An action is NaN, infinite or of a wrong shape or type.
+            gymnasium.error.ResetNeeded: There was no reset yet.
+        """
+        observation, rewards, terminated, truncated, infos = self.envs.step(self._actions)
+        dones = terminated | truncated
+        self._returns += rewards
+        self._lengths += 1
+        last_obs = infos.pop("final_obs", None)
+        last_infos = _list_of_infos(infos.pop("final_info", {}), self.num_envs)
+        listed = _list_of_infos(infos, self.num_envs)
+        for i in np.flatnonzero(dones).tolist():
+            self.reset_infos[i], listed[i] = listed[i], last_infos[i]
+            listed[i]["terminal_observation"] = last_obs[i]
+            listed[i]["episode"] = self._end_episode(i)
+        for info, late in zip(listed, (truncated & ~terminated).tolist(), strict=True):
+            info["TimeLimit.truncated"] = late
+        return observation, rewards.astype(np.float32), dones, listed
+
+    def _end_episode(self, i: int) -> dict[str, Any]:
+        """What `Monitor` says of an ended episode: return, length, seconds since the beginning."""
+        statistics = {
+            "r": round(float(self._returns[i]), 6),
+            "l": int(self._lengths[i]),
+            "t": round(time.time() - self._began, 6),
+        }
+        self._returns[i] = 0.0
+        self._lengths[i] = 0
+        return statistics
+
+    def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:
+        """An attribute of each of the environments."""
+        return [self._of_one(i, attr_name) for i in self._get_indices(indices)]
+
+    def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
+        """Sets an attribute, which all environments share.
+
+        Raises:
+            AttributeError: The environments have their own values of it, set at a reset.
+            ConfigError: `indices` does not name all environments.
+        """
+        if sorted(self._get_indices(indices)) != list(range(self.num_envs)):
+            raise ConfigError(f"{attr_name}: the environments share it; leave out indices")
+        self.envs.set_attr(attr_name, [value] * self.num_envs)
+
+    def env_method(
+        self,
+        method_name: str,
+        *method_args: Any,
+        indices: VecEnvIndices = None,
+        **method_kwargs: Any,
+    ) -> list[Any]:
+        """Calls a method of each of the environments."""
+        methods = self.get_attr(method_name, indices)
+        return [method(*method_args, **method_kwargs) for method in methods]
+
+    def env_is_wrapped(
+        self,
+        wrapper_class: type[gymnasium.Wrapper[Any, Any, Any, Any]],
+        indices: VecEnvIndices = None,
+    ) -> list[bool]:
+        """Whether the environments are in such a wrapper: in effect in a `Monitor`, in no other."""
+        return [issubclass(Monitor, wrapper_class) for _ in self._get_indices(indices)]
+
+    def get_images(self) -> Sequence[NDArray[np.uint8] | None]:
+        """A picture of each environment (height, width, 3), with render_mode "rgb_array"."""
+        if self.render_mode != "rgb_array":
+            warnings.warn(
+                f"render_mode is {self.render_mode!r}; get_images() needs 'rgb_array'", stacklevel=2
+            )
+            return [None] * self.num_envs
+        return list(self.envs.render())
+
+    def close(self) -> None:
+        """Closes the batch."""
+        self.envs.close()
+
+    def _of_one(self, i: int, name: str) -> Any:
+        if name in ("reset", "step"):
+            raise AttributeError(f"{name} is the batch's: the environments are stepped together")
+        return self.envs.of_one(i, name)
+
+
+def _as_scenario(options: dict[str, Any]) -> dict[str, Any]:
+    """Options of one environment, in the form in which the batch takes one for each."""
+    scenario = options.get("scenario") or {}
+    return {**scenario, **{name: value for name, value in options.items() if name != "scenario"}}
+
+
+def _list_of_infos(infos: dict[str, Any], n: int) -> list[dict[str, Any]]:
+    """One dict for each environment from Gymnasium's dict of arrays (masks are `_name`)."""
+    columns = {
+        name: _list_of_infos(value, n) if isinstance(value, dict) else value.tolist()
+        for name, value in infos.items()
+        if not name.startswith("_")
+    }
+    if not columns:
+        return [{} for _ in range(n)]
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]

@@ -247,8 +247,22 @@ fn targets_behind_around_and_beside_the_camera() {
     assert_eq!(at([0.0, 0.0, 0.2], 0.05), None, "behind");
     assert_eq!(at([0.0, 0.0, -0.02], 0.05), None, "around");
     assert_eq!(at([0.4, 0.0, -0.02], 0.05), None, "outside of the field");
+    let above = at([0.0, 0.06, -0.01], 0.05).expect("across the camera's plane");
+    assert!(above[1] < 40.0, "{above:?}: not its mirror image below");
     let [u, v] = at([0.06, 0.0, -0.01], 0.05).expect("across the camera's plane");
     assert!(u > 120.0 && (v - 65.5).abs() < 1e-9, "{u} {v}");
+}
+
+#[test]
+fn a_capsule_around_the_camera_is_invisible() {
+    let camera = view(0.0, 0.0);
+    let capsule = Shape::Capsule {
+        a: camera.position + Vector3::new(0.0, 0.0, 0.01),
+        b: camera.position - Vector3::new(0.02, 0.0, 0.2),
+        radius: 0.03,
+    };
+    let scene = [Primitive::new(capsule, Material::TARGET)];
+    assert_eq!(red_centroid(&scene, &camera), None);
 }
 
 #[test]

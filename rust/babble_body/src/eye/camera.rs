@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 /// is orthogonal with determinant −1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pinhole {
-    /// Centre of projection in world coordinates [m].
+    /// Centre of projection in world coordinates \[m\].
     pub position: Vector3<f64>,
     /// Camera from world. Rows: right, up, forward in world coordinates.
     pub rotation: Matrix3<f64>,
@@ -17,12 +17,12 @@ pub struct Pinhole {
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// Focal length [pixel].
+    /// Focal length \[pixel\].
     pub focal_px: f64,
 }
 
 impl Pinhole {
-    /// A camera whose image is `field_deg` [deg] wide, in (0, 180).
+    /// A camera whose image is `field_deg` \[deg\] wide, in (0, 180).
     #[must_use]
     pub fn from_field(
         position: Vector3<f64>,
@@ -79,7 +79,7 @@ impl Pinhole {
         }
     }
 
-    /// A world point in the camera frame [m].
+    /// A world point in the camera frame \[m\].
     #[must_use]
     pub fn camera_from_world(&self, point: &Vector3<f64>) -> Vector3<f64> {
         self.rotation * (point - self.position)
@@ -98,7 +98,7 @@ impl Pinhole {
         })
     }
 
-    /// Direction of a world point in the camera frame [rad]: azimuth
+    /// Direction of a world point in the camera frame \[rad\]: azimuth
     /// atan2(x, z) to the right, elevation atan2(y, √(x² + z²)) upwards.
     #[must_use]
     pub fn direction_angles(&self, point: &Vector3<f64>) -> [f64; 2] {
@@ -110,7 +110,7 @@ impl Pinhole {
     }
 
     /// Unit vector in world coordinates with the given direction angles
-    /// [rad]: the inverse of [`direction_angles`](Self::direction_angles).
+    /// \[rad\]: the inverse of [`direction_angles`](Self::direction_angles).
     #[must_use]
     pub fn ray(&self, [azimuth, elevation]: [f64; 2]) -> Vector3<f64> {
         let (sin_a, cos_a) = libm::sincos(azimuth);

@@ -1,8 +1,9 @@
 //! Centroid of the red pixels: O of Eq. 1.
 
-use super::piece::{Cutter, Piece, Surface, Window};
+use super::piece::{Cutter, Piece, Surface};
 use super::raster::{Buffer, ball_columns};
 use super::row::Lens;
+use super::window::Window;
 use super::{Pinhole, Primitive};
 
 /// Number and coordinate sums of a set of pixels.

@@ -25,9 +25,9 @@ pub enum EyeError {
     /// A buffer for a picture has the wrong length.
     #[error("eye: buffer of {found} bytes for a picture of height x width x 3 = {expected} bytes")]
     BufferSize {
-        /// Its length [byte].
+        /// Its length \[byte\].
         found: usize,
-        /// What it must be [byte].
+        /// What it must be \[byte\].
         expected: usize,
     },
 }

@@ -19,8 +19,8 @@ pub(super) struct Checker {
 const CONTRAST: f32 = 0.955;
 
 impl Checker {
-    /// From the rectangle's flat, its middle and half edges [m] and the edge
-    /// of a square [m].
+    /// From the rectangle's flat, its middle and half edges \[m\] and the edge
+    /// of a square \[m\].
     pub(super) fn new(
         flat: &Flat,
         centre: [f64; 2],

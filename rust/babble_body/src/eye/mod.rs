@@ -8,6 +8,7 @@
 
 mod camera;
 mod centroid;
+mod config;
 mod error;
 mod gaze;
 mod ground;
@@ -20,11 +21,13 @@ mod scene;
 mod shading;
 mod shadow;
 mod view;
+mod window;
 
 pub use camera::Pinhole;
 pub use centroid::red_centroid;
+pub use config::{EyeConfig, GazeFrame};
 pub use error::EyeError;
-pub use gaze::{Eye, EyeConfig, Gaze, GazeFrame};
+pub use gaze::{Eye, Gaze};
 pub use light::{TOWARDS_KEY, is_red};
 pub use raster::{Raster, rasterise};
 pub use scene::{Material, Primitive, Shape};

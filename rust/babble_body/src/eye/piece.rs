@@ -4,58 +4,15 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::row::{Cone, Lens};
+use super::window::{Window, ball_window, corners_window};
 use super::{Pinhole, Primitive, Shape};
-
-/// Pixels a surface can fall on: half-open ranges of columns and rows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Window {
-    pub(super) columns: (usize, usize),
-    pub(super) rows: (usize, usize),
-}
-
-impl Window {
-    pub(super) fn frame(lens: &Lens) -> Self {
-        Self {
-            columns: (0, lens.width),
-            rows: (0, lens.height),
-        }
-    }
-
-    pub(super) fn overlap(&self, other: &Self) -> Self {
-        let meet = |a: (usize, usize), b: (usize, usize)| (a.0.max(b.0), a.1.min(b.1));
-        Self {
-            columns: meet(self.columns, other.columns),
-            rows: meet(self.rows, other.rows),
-        }
-    }
-
-    pub(super) fn hull(&self, other: &Self) -> Self {
-        let join = |a: (usize, usize), b: (usize, usize)| (a.0.min(b.0), a.1.max(b.1));
-        Self {
-            columns: join(self.columns, other.columns),
-            rows: join(self.rows, other.rows),
-        }
-    }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.columns.0 >= self.columns.1 || self.rows.0 >= self.rows.1
-    }
-
-    pub(super) fn width(&self) -> usize {
-        self.columns.1.saturating_sub(self.columns.0)
-    }
-
-    pub(super) fn height(&self) -> usize {
-        self.rows.1.saturating_sub(self.rows.0)
-    }
-}
 
 /// A ball or the side of a cylinder. Its inverse depth is
 /// w = l · d + √((l · d)² − dᵀ Q d), the nearer of the two intersections.
 #[derive(Debug, Clone)]
 pub(super) struct Quadric {
     pub(super) cone: Cone,
-    /// Centre of the ball, or a point on the axis, in the camera frame [m].
+    /// Centre of the ball, or a point on the axis, in the camera frame \[m\].
     pub(super) centre: Vector3<f64>,
     /// Identity for a ball; projection along the axis for a cylinder.
     pub(super) across: Matrix3<f64>,
@@ -219,16 +176,7 @@ impl<'a> Cutter<'a> {
                 half_extents,
                 ..
             } => {
-                let to_camera = self.camera.rotation;
-                let centre = self
-                    .camera
-                    .camera_from_world(&Vector3::new(centre[0], centre[1], *height));
-                let half = [
-                    to_camera.column(0) * half_extents[0],
-                    to_camera.column(1) * half_extents[1],
-                ];
-                let up = to_camera.column(2).into_owned();
-                self.rectangle(primitive, centre, half, up);
+                self.ground(primitive, *height, *centre, *half_extents);
             }
         }
     }
@@ -316,6 +264,14 @@ impl<'a> Cutter<'a> {
         }
     }
 
+    fn ground(&mut self, primitive: usize, height: f64, [x, y]: [f64; 2], half: [f64; 2]) {
+        let camera = self.camera;
+        let centre = camera.camera_from_world(&Vector3::new(x, y, height));
+        let axis = |k| camera.rotation.column(k).into_owned();
+        let half = [axis(0) * half[0], axis(1) * half[1]];
+        self.rectangle(primitive, centre, half, axis(2));
+    }
+
     fn rectangle(
         &mut self,
         primitive: usize,
@@ -375,55 +331,4 @@ fn distance_to_segment(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
         0.0
     };
     (a + way * share).norm()
-}
-
-/// Window of a ball: its tangent planes through the camera's right and up axes.
-pub(super) fn ball_window(lens: &Lens, centre: &Vector3<f64>, radius: f64) -> Window {
-    if centre.z <= -radius {
-        return Window {
-            columns: (0, 0),
-            rows: (0, 0),
-        };
-    }
-    let depth = centre.z * centre.z - radius * radius;
-    if centre.z <= radius || depth <= 0.0 {
-        return Window::frame(lens);
-    }
-    let tangents = |offset: f64| {
-        let swing = radius * (offset * offset + depth).sqrt();
-        [
-            (offset * centre.z - swing) / depth,
-            (offset * centre.z + swing) / depth,
-        ]
-    };
-    Window {
-        columns: lens.columns(tangents(centre.x)),
-        rows: lens.rows(tangents(centre.y)),
-    }
-}
-
-/// Window of the convex hull of points: all of the frame if some lie behind.
-fn corners_window(lens: &Lens, corners: &[Vector3<f64>]) -> Window {
-    let behind = corners.iter().filter(|p| p.z <= 1e-9).count();
-    if behind == corners.len() {
-        return Window {
-            columns: (0, 0),
-            rows: (0, 0),
-        };
-    }
-    if behind > 0 {
-        return Window::frame(lens);
-    }
-    let span = |coordinate: fn(&Vector3<f64>) -> f64| {
-        corners
-            .iter()
-            .map(coordinate)
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], c| {
-                [low.min(c), high.max(c)]
-            })
-    };
-    Window {
-        columns: lens.columns(span(|p| p.x / p.z)),
-        rows: lens.rows(span(|p| p.y / p.z)),
-    }
 }

@@ -2,8 +2,9 @@
 
 use nalgebra::Vector3;
 
-use super::piece::{Cutter, Ends, Flat, Piece, Quadric, Surface, Window, cut_scene};
+use super::piece::{Cutter, Ends, Flat, Piece, Quadric, Surface, cut_scene};
 use super::row::{Cone, Lens, NOWHERE, along_row, clip};
+use super::window::Window;
 use super::{Pinhole, Primitive};
 
 /// No surface at a pixel.
@@ -14,7 +15,7 @@ pub(super) struct Buffer {
     pub(super) window: Window,
     /// Index of the piece or [`NOTHING`], row-major.
     pub(super) piece: Vec<u32>,
-    /// 1 / depth [1/m], 0 where there is nothing.
+    /// 1 / depth \[1/m\], 0 where there is nothing.
     pub(super) inverse_depth: Vec<f32>,
 }
 
@@ -215,7 +216,7 @@ impl Raster {
         self.primitives.get(piece as usize).copied()
     }
 
-    /// Depth along the camera's axis [m] at column i, row j; infinite for the
+    /// Depth along the camera's axis \[m\] at column i, row j; infinite for the
     /// background and for pixels outside of the image.
     #[must_use]
     pub fn depth(&self, i: usize, j: usize) -> f32 {

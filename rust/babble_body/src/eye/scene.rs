@@ -2,53 +2,53 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-/// A visible shape in world coordinates [m]. Solids are seen from outside
+/// A visible shape in world coordinates \[m\]. Solids are seen from outside
 /// only: one that holds the camera is invisible.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
     /// A ball.
     Sphere {
-        /// Centre [m].
+        /// Centre \[m\].
         centre: Vector3<f64>,
-        /// Radius [m].
+        /// Radius \[m\].
         radius: f64,
     },
     /// A cylinder with round ends: all points within `radius` of the segment.
     Capsule {
-        /// One end of the segment [m].
+        /// One end of the segment \[m\].
         a: Vector3<f64>,
-        /// The other end of the segment [m].
+        /// The other end of the segment \[m\].
         b: Vector3<f64>,
-        /// Radius [m].
+        /// Radius \[m\].
         radius: f64,
     },
     /// A solid cylinder with flat ends.
     Cylinder {
-        /// Centre of one end [m].
+        /// Centre of one end \[m\].
         a: Vector3<f64>,
-        /// Centre of the other end [m].
+        /// Centre of the other end \[m\].
         b: Vector3<f64>,
-        /// Radius [m].
+        /// Radius \[m\].
         radius: f64,
     },
     /// A box.
     Cuboid {
-        /// Centre [m].
+        /// Centre \[m\].
         centre: Vector3<f64>,
         /// Columns: the box's axes in world coordinates.
         rotation: Matrix3<f64>,
-        /// Half the edges along those axes [m].
+        /// Half the edges along those axes \[m\].
         half_extents: Vector3<f64>,
     },
     /// A horizontal, checkered rectangle, seen from above. Shadows fall on it.
     Ground {
-        /// Height of the plane [m].
+        /// Height of the plane \[m\].
         height: f64,
-        /// Middle of the rectangle (x, y) [m].
+        /// Middle of the rectangle (x, y) \[m\].
         centre: [f64; 2],
-        /// Half the edges along x and y [m].
+        /// Half the edges along x and y \[m\].
         half_extents: [f64; 2],
-        /// Edge of a square of the checker [m].
+        /// Edge of a square of the checker \[m\].
         cell: f64,
     },
 }

@@ -5,10 +5,11 @@ use nalgebra::Vector3;
 
 use super::ground::Checker;
 use super::light::{Light, SHADOW, Shaded, Swatch, background, fill, pigment, swatch};
-use super::piece::{Cutter, Piece, Surface, Window, cut_scene};
+use super::piece::{Cutter, Piece, Surface, cut_scene};
 use super::raster::Buffer;
 use super::row::Lens;
 use super::shadow::{Shadow, cast};
+use super::window::Window;
 use super::{EyeError, Pinhole, Primitive, Shape};
 
 /// Rows drawn at a time, few enough for their buffers to stay in the cache.

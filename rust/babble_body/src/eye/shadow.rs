@@ -4,9 +4,10 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::light::TOWARDS_KEY;
-use super::piece::{Cutter, Flat, Window, perpendicular};
+use super::piece::{Cutter, Flat, perpendicular};
 use super::raster::{Buffer, ellipse_interval, meet, rectangle_interval};
 use super::row::{Cone, Lens};
+use super::window::Window;
 use super::{Pinhole, Primitive, Shape};
 
 /// A patch of shadow on the ground.

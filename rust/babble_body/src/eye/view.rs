@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::Pinhole;
 
-/// Field of view of the shorter edge [deg].
+/// Field of view of the shorter edge \[deg\].
 const FIELD_DEG: f64 = 37.0;
 
 /// A fixed view of the whole workspace, from behind the body, right and above.

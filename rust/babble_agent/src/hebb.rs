@@ -156,7 +156,7 @@ impl Hebb {
         &self.config
     }
 
-    /// The weights w_ji and the running averages.
+    /// The weights `w_ji` and the running averages.
     #[must_use]
     pub const fn weights(&self) -> &Association {
         &self.weights

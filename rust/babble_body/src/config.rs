@@ -44,9 +44,9 @@ pub struct Hand {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Muscles {
-    /// Stiffness K_P \[N·m/rad\]; 50 \[P\].
+    /// Stiffness `K_P` \[N·m/rad\]; 50 \[P\].
     pub kp: f64,
-    /// Damping K_D \[N·m·s/rad\]; 40 \[P\]. The arm's time constant is `kd / kp` seconds.
+    /// Damping `K_D` \[N·m·s/rad\]; 40 \[P\]. The arm's time constant is `kd / kp` seconds.
     pub kd: f64,
     /// Torque of an action of 1 in torque control \[N·m\]; 50 \[C\].
     pub torque_max: f64,

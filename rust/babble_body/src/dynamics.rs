@@ -3,7 +3,9 @@
 //! The arm is light beside the muscles' damping, so the equation is stiff: an explicit step
 //! diverges even at half a millisecond. With position and velocity taken at the end of the step,
 //!
+//! ```text
 //! (M + dt·K_D + dt²·K_P) Δv = dt (K_P (q_des − q) − K_D v − dt·K_P v − C)
+//! ```
 //!
 //! is stable at any step. M is the arm's inertia, C its Coriolis and centrifugal torque; gravity is
 //! compensated (Sect. II-B).
@@ -87,7 +89,7 @@ impl Dynamics {
         self.advance(state, mass, dt * kd + dt * dt * kp, rhs, dt)
     }
 
-    /// One step of `dt` \[s\] under the joint torques T = `torque` − K_D q̇ \[N·m\].
+    /// One step of `dt` \[s\] under the joint torques `T = torque − K_D q̇` \[N·m\].
     #[inline]
     #[must_use]
     pub fn step_torque(&self, state: ArmState, torque: [f64; 2], dt: f64) -> ArmState {

@@ -148,12 +148,14 @@ impl Batch {
     }
 
     /// What each environment showed last.
+    #[must_use]
     pub fn records(&self) -> impl ExactSizeIterator<Item = &Record> {
         self.slots.iter().map(|slot| &slot.record)
     }
 
     /// The episode that ended within the last step, of each environment that a same-step reset began
     /// anew.
+    #[must_use]
     pub fn last(&self) -> impl ExactSizeIterator<Item = Option<&Last>> {
         self.slots.iter().map(|slot| slot.last.as_ref())
     }
@@ -201,7 +203,11 @@ impl Batch {
         };
         let slots = &mut self.slots;
         if self.pool.threads() == 1 {
-            return slots.iter_mut().zip(mask).try_for_each(reset);
+            return slots
+                .iter_mut()
+                .zip(mask)
+                .map(reset)
+                .fold(Ok(()), Result::and);
         }
         let results: Vec<_> = self.pool.run(|| {
             slots
@@ -227,7 +233,8 @@ impl Batch {
             return slots
                 .iter_mut()
                 .zip(actions.chunks_exact(2))
-                .try_for_each(step);
+                .map(step)
+                .fold(Ok(()), Result::and);
         }
         let results: Vec<_> = self.pool.run(|| {
             slots

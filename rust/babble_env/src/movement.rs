@@ -54,17 +54,12 @@ impl MovementPath {
         };
         for c in curve {
             let point = babble_brain::generator::place(case.hand, case.target, c);
-            match task
-                .arm
-                .posture_at(point.into())
-                .filter(|&q| task.arm.in_range(q))
-            {
-                Some(q) => path.postures.push(q),
-                None => {
-                    path.violates = true;
-                    break;
-                }
-            }
+            let posture = task.arm.posture_at(point.into());
+            let Some(q) = posture.filter(|&q| task.arm.in_range(q)) else {
+                path.violates = true;
+                break;
+            };
+            path.postures.push(q);
         }
         Ok(path)
     }

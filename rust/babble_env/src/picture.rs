@@ -1,8 +1,6 @@
 //! What the eye, and a person, sees of an episode.
 
-use babble_body::eye::{
-    Gaze, Pinhole, Primitive, is_red, render_rgb, render_smooth, third_person,
-};
+use babble_body::eye::{Gaze, Pinhole, Primitive, is_red, render_rgb, render_smooth, third_person};
 use babble_body::pose;
 use image::RgbImage;
 use nalgebra::Vector2;
@@ -68,7 +66,11 @@ pub fn picture(
 /// saw ([`ReachTask::foveate`]).
 fn draw_target_on_top(image: &mut RgbImage, target: &[Primitive], camera: &Pinhole) {
     let alone = render_rgb(target, camera);
-    for (pixel, red) in image.pixels_mut().zip(alone.pixels()).filter(|(_, p)| is_red(p.0)) {
+    for (pixel, red) in image
+        .pixels_mut()
+        .zip(alone.pixels())
+        .filter(|(_, p)| is_red(p.0))
+    {
         *pixel = *red;
     }
 }

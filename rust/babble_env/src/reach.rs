@@ -279,12 +279,9 @@ impl Reach {
             state.distance <= task.config.reach.success_radius_m
                 && (rested || !task.options.settled)
         };
-        state.is_success = at_target
-            && match state.outcome {
-                Outcome::Running | Outcome::Success => true,
-                // In the goal form the reward depends on positions alone.
-                _ => task.options.goal,
-            };
+        // In the goal form a collided arm may still earn the reward, which knows positions alone.
+        state.is_success =
+            at_target && matches!(state.outcome, Outcome::Running | Outcome::Success);
         state.ever_success |= state.is_success;
         if state.outcome == Outcome::Running && state.is_success && !task.options.goal {
             state.outcome = Outcome::Success;

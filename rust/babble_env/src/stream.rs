@@ -45,7 +45,7 @@ impl Stream {
     }
 }
 
-/// SplitMix64, the usual way to spread a few seed words over a state (Steele et al. 2014).
+/// `SplitMix64`, the usual way to spread a few seed words over a state (Steele et al. 2014).
 struct SplitMix(u64);
 
 impl SplitMix {

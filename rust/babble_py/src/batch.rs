@@ -11,6 +11,9 @@ use pyo3::types::{PyBytes, PyDict, PyTuple};
 use crate::task::Task;
 use crate::{convert, errors};
 
+/// Indices of the environments whose episode ended, and what those episodes showed last.
+type Ended<'py> = (Bound<'py, PyArray1<usize>>, Bound<'py, PyDict>);
+
 /// A batch of n episodes, stepped together.
 #[pyclass(module = "gym_babble._core")]
 #[derive(Debug)]
@@ -139,10 +142,7 @@ impl Batch {
 
     /// The same for the episodes that ended within the last step and were begun anew, and their
     /// indices; None if there are none.
-    fn ended<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<Option<(Bound<'py, PyArray1<usize>>, Bound<'py, PyDict>)>> {
+    fn ended<'py>(&self, py: Python<'py>) -> PyResult<Option<Ended<'py>>> {
         let ended: Vec<(usize, &Record)> = self
             .batch
             .last()

@@ -106,7 +106,7 @@ impl Association {
         Ok(PyArray1::from_vec(py, a))
     }
 
-    /// The weights w_ji (`n_out`, `n_in`), as a copy.
+    /// The weights `w_ji` (`n_out`, `n_in`), as a copy.
     #[getter]
     fn weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let w = &self.weights;

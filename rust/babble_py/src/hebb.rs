@@ -17,7 +17,7 @@ const CHUNK: usize = 256;
 #[pyclass(module = "gym_babble._core")]
 #[derive(Debug)]
 pub(crate) struct Hebb {
-    hebb: babble_agent::Hebb,
+    network: babble_agent::Hebb,
     babbling: Babbling,
     pool: Pool,
     seed: u64,
@@ -32,7 +32,7 @@ impl Hebb {
         let config: HebbConfig = serde_json::from_str(config)
             .map_err(|error| errors::ConfigError::new_err(format!("agent config: {error}")))?;
         Ok(Self {
-            hebb: babble_agent::Hebb::new(config).map_err(errors::agent)?,
+            network: babble_agent::Hebb::new(config).map_err(errors::agent)?,
             babbling: Babbling::new(seed, fidelity(quasi_static)),
             pool: Pool::new(threads).map_err(errors::env)?,
             seed,
@@ -49,7 +49,7 @@ impl Hebb {
 
     /// Its numbers, as JSON.
     fn config(&self) -> PyResult<String> {
-        json(self.hebb.config())
+        json(self.network.config())
     }
 
     /// Babbles on `task` until `legal` more movements were legal, and learns from them.
@@ -57,11 +57,11 @@ impl Hebb {
         let task: &ReachTask = &task.task;
         py.detach(|| {
             let experiences = self.babbling.experience(task, legal, &mut self.pool)?;
-            let hebb = &mut self.hebb;
+            let network = &mut self.network;
             self.pool.run(|| {
                 experiences
                     .chunks(CHUNK)
-                    .try_for_each(|chunk| hebb.learn(chunk))
+                    .try_for_each(|chunk| network.learn(chunk))
             })?
         })
         .map_err(errors::agent)
@@ -74,7 +74,7 @@ impl Hebb {
         senses: PyReadonlyArray2<'py, f32>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let senses = convert::senses(&senses)?;
-        let decide = |s: &[f32; 11]| self.hebb.decide([s[0], s[1]], [s[2], s[3]]);
+        let decide = |s: &[f32; 11]| self.network.decide([s[0], s[1]], [s[2], s[3]]);
         let b: Vec<[f64; 2]> = py
             .detach(|| senses.iter().map(decide).collect::<Result<_, _>>())
             .map_err(errors::agent)?;
@@ -89,16 +89,16 @@ impl Hebb {
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let [e0, e1, o0, o1, ..] = senses;
         let a = self
-            .hebb
+            .network
             .recall([e0, e1], [o0, o1])
             .map_err(errors::agent)?;
-        let side = self.hebb.config().output_neurons;
+        let side = self.network.config().output_neurons;
         PyArray1::from_vec(py, a).reshape([side, side])
     }
 
-    /// The weights w_ji (`n_out`, `n_in`) and the running averages, as copies.
+    /// The weights `w_ji` (`n_out`, `n_in`) and the running averages, as copies.
     fn weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let w = self.hebb.weights();
+        let w = self.network.weights();
         let dict = PyDict::new(py);
         let weights = PyArray1::from_slice(py, w.weights()).reshape([w.n_out(), w.n_in()])?;
         dict.set_item("weights", weights)?;
@@ -109,7 +109,7 @@ impl Hebb {
 
     /// Neurons along the axes of the input map.
     fn input_shape(&self) -> Vec<usize> {
-        self.hebb.input_shape()
+        self.network.input_shape()
     }
 
     /// Movements babbled.
@@ -139,7 +139,7 @@ impl Hebb {
     /// The agent as the bytes of a safetensors file; `config` is the JSON of body and task.
     fn save<'py>(&self, py: Python<'py>, config: &str) -> PyResult<Bound<'py, PyBytes>> {
         let metadata = Metadata::new(
-            self.hebb.config().clone(),
+            self.network.config().clone(),
             Config::from_json(config).map_err(errors::env)?,
             self.seed,
             fidelity(self.quasi_static),
@@ -148,14 +148,14 @@ impl Hebb {
         );
         Ok(PyBytes::new(
             py,
-            &store::save(&self.hebb, &metadata).map_err(errors::agent)?,
+            &store::save(&self.network, &metadata).map_err(errors::agent)?,
         ))
     }
 
     /// The agent in the bytes of a safetensors file, and the JSON of the body and task it learnt on.
     #[staticmethod]
     fn load(bytes: &[u8], threads: usize) -> PyResult<(Self, String)> {
-        let (hebb, metadata) = store::load(bytes).map_err(errors::agent)?;
+        let (network, metadata) = store::load(bytes).map_err(errors::agent)?;
         let Metadata {
             seed,
             quasi_static,
@@ -164,7 +164,7 @@ impl Hebb {
             ..
         } = metadata;
         let agent = Self {
-            hebb,
+            network,
             babbling: Babbling::resume(seed, fidelity(quasi_static), movements, legal),
             pool: Pool::new(threads).map_err(errors::env)?,
             seed,

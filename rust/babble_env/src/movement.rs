@@ -45,16 +45,13 @@ impl MovementPath {
     /// # Errors
     /// [`EnvError::Brain`] for b outside of (0, 1).
     pub fn new(task: &ReachTask, case: &ReachCase, b: [f64; 2]) -> Result<Self, EnvError> {
-        let generator = TimeBaseGenerator::new(b[0], b[1], task.config.reach.movement_s)?;
-        let mut curve = vec![[0.0; 2]; task.config.reach.movement_steps()];
-        generator.sample_into(&mut curve);
+        let way = Self::desired(task, case, b)?;
         let mut path = Self {
-            postures: Vec::with_capacity(curve.len()),
+            postures: Vec::with_capacity(way.len()),
             violates: false,
         };
-        for c in curve {
-            let point = babble_brain::generator::place(case.hand, case.target, c);
-            let posture = task.arm.posture_at(point.into());
+        for point in way {
+            let posture = task.arm.posture_at(point);
             let Some(q) = posture.filter(|&q| task.arm.in_range(q)) else {
                 path.violates = true;
                 break;

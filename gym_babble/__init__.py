@@ -34,4 +34,6 @@ __all__ = [
 register_all()
 
 if debug_build:
-    warnings.warn("gym_babble's core was built without optimisation: run `make setup`", stacklevel=2)
+    warnings.warn(
+        "gym_babble's core was built without optimisation: run `make setup`", stacklevel=2
+    )

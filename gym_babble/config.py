@@ -207,7 +207,8 @@ class Config:
         Raises:
             ConfigError: A field is unknown or out of bounds.
         """
-        return _build(cls, json.loads(_core.complete_config(text)))
+        config: Config = _build(cls, json.loads(_core.complete_config(text)))
+        return config
 
     def to_json(self) -> str:
         """The whole config as JSON."""
@@ -224,17 +225,17 @@ def config_json(body: BodyLike) -> str:
     Raises:
         ConfigError: A name, field or value is not one there is.
     """
-    if isinstance(body, Config):
-        return _core.complete_config(body.to_json())
-    if isinstance(body, Mapping):
+    if isinstance(body, Config | Mapping):
         try:
-            return _core.complete_config(json.dumps(body))
-        except TypeError as error:
+            text = body.to_json() if isinstance(body, Config) else json.dumps(dict(body))
+        except (TypeError, ValueError) as error:
             raise ConfigError(f"config: {error}") from error
-    if isinstance(body, Path) or (isinstance(body, str) and body.endswith((".toml", ".json"))):
+        return _core.complete_config(text)
+    if isinstance(body, Path):
         return _core.load_config(body)
     if isinstance(body, str):
-        return _core.profile_config(body)
+        is_file = body.endswith((".toml", ".json"))
+        return _core.load_config(body) if is_file else _core.profile_config(body)
     raise ConfigError(
         f"body is a {type(body).__name__}; it must be a profile's name, a path, a dict or a Config"
     )
@@ -242,9 +243,10 @@ def config_json(body: BodyLike) -> str:
 
 def _build(kind: Any, value: Any) -> Any:
     """A dataclass of type `kind` from what JSON holds."""
-    if is_dataclass(kind) and isinstance(value, dict):
+    if isinstance(kind, type) and is_dataclass(kind):
         hints = get_type_hints(kind)
-        return kind(**{f.name: _build(hints[f.name], value[f.name]) for f in fields(kind) if f.name in value})
+        given = [f.name for f in fields(kind) if f.name in value]
+        return kind(**{name: _build(hints[name], value[name]) for name in given})
     if kind == dict[str, Joint]:
         return {name: _build(Joint, joint) for name, joint in value.items()}
     return tuple(value) if isinstance(value, list) else value

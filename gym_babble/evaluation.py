@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +14,8 @@ from gym_babble.progress import track
 from gym_babble.scenarios import Scenario, scenarios
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from gym_babble.agents.movements import Agent
     from gym_babble.config import BodyLike
 
@@ -96,9 +97,7 @@ def evaluate(
     return result
 
 
-def _play(
-    agent: Agent, envs: Any, cases: Sequence[Scenario], *, deterministic: bool
-) -> Evaluation:
+def _play(agent: Agent, envs: Any, cases: Sequence[Scenario], *, deterministic: bool) -> Evaluation:
     """One episode in each environment; those that have ended go on unseen."""
     n = len(cases)
     observation, _ = envs.reset(seed=0, options={"scenario": list(cases)})

@@ -18,7 +18,8 @@ class Registered:
     obs: str
     control: str
     reward: str
-    max_episode_steps: int
+    max_episode_steps: int | None
+    """Time limit; none in `pattern` control, where each episode ends by itself after one step."""
     reward_threshold: float
     """Mean return at which the task counts as solved: success in nine cases of ten (an oracle that
     plays whole movements has a mean return of 2.66, 1, −168 and 1)."""
@@ -33,7 +34,7 @@ ENVIRONMENTS = (
     Registered("BabbleReach-v0", "senses", "delta_posture", "progress", 240, 2.3),
     Registered("BabbleReachSparse-v0", "senses", "delta_posture", "sparse", 240, 0.9),
     Registered("BabbleReachGoal-v0", "goal", "delta_posture", "sparse", 240, -120.0),
-    Registered("BabbleReachPattern-v0", "senses", "pattern", "sparse", 1, 0.9),
+    Registered("BabbleReachPattern-v0", "senses", "pattern", "sparse", None, 0.9),
 )
 
 

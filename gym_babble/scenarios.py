@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TYPE_CHECKING, Any, NamedTuple, TypedDict
+
+import numpy as np
 
 from gym_babble import _core
 from gym_babble.config import BodyLike, config_json
 from gym_babble.errors import ConfigError, ScenarioError
 
 if TYPE_CHECKING:
-    from gym_babble._core import Batch, Task
+    from gym_babble._core import Task
 
-__all__ = ["PROTOCOLS", "SPLITS", "Scenario", "apply_options", "scenarios"]
+__all__ = ["PROTOCOLS", "SPLITS", "Request", "Scenario", "read_options", "scenarios"]
 
 PROTOCOLS = ("table1", "fig4")
 SPLITS = ("learning", "validation", "test")
@@ -24,6 +26,7 @@ class Scenario(TypedDict):
 
     protocol: str
     index: int
+    """Place in the protocol: in "fig4", 36 k + j is start j around target k."""
     start: tuple[float, float]
     target: tuple[float, float]
     obstacle: tuple[float, float, float] | None
@@ -61,22 +64,40 @@ def scenarios(
         raise ConfigError(f"n = {n} is not at least 1")
     task = _core.Task(config_json(body))
     if protocol == "table1":
-        cases: list[Any] = list(task.table1(1000 if n is None else n, seed, split, threads))
+        cases = dict(enumerate(task.table1(1000 if n is None else n, seed, split, threads)))
     else:
-        cases = list(task.fig4())
+        cases = {i: case for i, case in enumerate(task.fig4()) if case is not None}
     numbered = [
-        Scenario(protocol=protocol, index=i, **case) for i, case in enumerate(cases) if case
+        Scenario(
+            protocol=protocol,
+            index=i,
+            start=case["start"],
+            target=case["target"],
+            obstacle=case["obstacle"],
+        )
+        for i, case in cases.items()
     ]
     return numbered[:n]
 
 
-def apply_options(batch: Batch, i: int, task: Task, options: Mapping[str, Any]) -> None:
-    """Sets what the resets of environment `i` ask of their cases.
+class Request(NamedTuple):
+    """What reset options ask of the cases to come; what is None is drawn."""
+
+    start: list[float] | None
+    target: list[float] | None
+    obstacle: list[float] | None
+    no_obstacle: bool
+
+
+def read_options(options: Any, task: Task) -> Request:
+    """What `reset(options=...)` asks for.
 
     Raises:
         ConfigError: An option is unknown.
         ScenarioError: A position is not made of two numbers.
     """
+    if not isinstance(options, Mapping):
+        raise ConfigError(f"options is a {type(options).__name__}, expected a dict")
     scenario = options.get("scenario")
     if scenario is not None:
         if not isinstance(scenario, Mapping):
@@ -85,24 +106,20 @@ def apply_options(batch: Batch, i: int, task: Task, options: Mapping[str, Any]) 
     unknown = set(options) - {*CASE_OPTIONS, "scenario", "protocol", "index"}
     if unknown:
         known = ", ".join(("scenario", *CASE_OPTIONS))
-        raise ConfigError(f"reset options: {sorted(unknown)} unknown; there are {known}")
-    obstacle = _obstacle(task, options["obstacle"]) if options.get("obstacle") is not None else None
-    batch.request(
-        i,
+        raise ConfigError(f"options: {sorted(map(str, unknown))} unknown; there are {known}")
+    return Request(
         start=_numbers("start", options.get("start"), 2),
         target=_numbers("target", options.get("target"), 2),
-        obstacle=obstacle,
+        obstacle=_obstacle(task, options.get("obstacle")),
         no_obstacle="obstacle" in options and options["obstacle"] is None,
     )
 
 
-def _obstacle(task: Task, value: Any) -> list[float]:
+def _obstacle(task: Task, value: Any) -> list[float] | None:
     """An obstacle (x, y, radius); of two numbers the radius is the config's."""
-    if isinstance(value, Sequence) and len(value) == 2:
+    if isinstance(value, Sequence | np.ndarray) and len(value) == 2:
         value = (*value, task.obstacle_radius)
-    numbers = _numbers("obstacle", value, 3)
-    assert numbers is not None
-    return numbers
+    return _numbers("obstacle", value, 3)
 
 
 def _numbers(name: str, value: Any, n: int) -> list[float] | None:

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 __all__ = ["OBSERVATIONS", "Entry", "Spec", "as_actions", "observation_space"]
 
 OBSERVATIONS = ("senses", "flat", "goal", "retina")
-MIN_RETINA, MAX_RETINA = 36, 2048
 
 
 @dataclass(frozen=True)
@@ -86,14 +85,21 @@ class Spec:
 
 
 def _entry(raw: dict[str, Any]) -> Entry:
-    return Entry(**{k: tuple(v) if isinstance(v, list) else v for k, v in raw.items()})
+    return Entry(
+        name=raw["name"],
+        labels=tuple(raw["labels"]),
+        low=tuple(raw["low"]),
+        high=tuple(raw["high"]),
+        unit=raw["unit"],
+        description=raw["description"],
+    )
 
 
 def observation_space(spec: Spec, obs: str, retina_size: int) -> spaces.Space[Any]:
     """The observation space for a value of `obs=`.
 
     Raises:
-        ConfigError: `obs` or `retina_size` is not one there is.
+        ConfigError: `obs` is not one there is.
     """
     if obs == "flat":
         return spec.flat
@@ -103,8 +109,6 @@ def observation_space(spec: Spec, obs: str, retina_size: int) -> spaces.Space[An
         goals = {entry.name: entry.box for entry in spec.goals}
         return spaces.Dict({"observation": spec.flat, **goals})
     if obs == "retina":
-        if not MIN_RETINA <= retina_size <= MAX_RETINA:
-            raise ConfigError(f"retina_size = {retina_size} is not in [{MIN_RETINA}, {MAX_RETINA}]")
         image = spaces.Box(0, 255, (retina_size, retina_size, 3), np.uint8)
         senses = {entry.name: entry.box for entry in spec.senses}
         return spaces.Dict({**senses, "retina": image})
@@ -119,13 +123,20 @@ def as_actions(action: Any, shape: tuple[int, ...]) -> NDArray[np.float32]:
     """
     if type(action) is np.ndarray and action.dtype == np.float32 and action.shape == shape:
         return action
-    array = np.asarray(action)
+    try:
+        array = np.asarray(action)
+    except ValueError as error:
+        raise ActionError(f"action is not an array: {error}") from error
     if array.dtype.kind not in "fiu":
         raise ActionError(f"action has dtype {array.dtype}, expected real numbers (float32)")
     if array.shape != shape:
         raise ActionError(f"action has shape {array.shape}, expected {shape}")
     with np.errstate(over="ignore"):
-        return array.astype(np.float32)
+        single = array.astype(np.float32)
+    # A finite number beyond float32 is out of range, not infinite.
+    huge = np.isinf(single) & np.isfinite(array)
+    single[huge] = np.sign(array[huge])
+    return single
 
 
 def need_reset() -> ResetNeeded:

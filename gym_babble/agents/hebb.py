@@ -12,6 +12,7 @@ import numpy as np
 
 from gym_babble import _core
 from gym_babble.agents.movements import EnvLike, MovementAgent
+from gym_babble.envs import BabbleReachEnv
 from gym_babble.errors import AgentFileError, ConfigError
 from gym_babble.progress import track
 
@@ -125,7 +126,7 @@ class HebbBabbling(MovementAgent):
             raise AgentFileError(f"{path}: {error}") from error
         agent = cls.__new__(cls)
         MovementAgent.__init__(agent, _pattern_env(config) if env is None else env)
-        agent._hebb = core
+        agent._hebb = core  # noqa: SLF001 - its own
         return agent
 
     @property
@@ -135,7 +136,7 @@ class HebbBabbling(MovementAgent):
 
     @property
     def variant(self) -> str:
-        """ "paper" or "conjunctive"."""
+        """Which variant this is: "paper" or "conjunctive"."""
         return str(self.config["variant"])
 
     @property
@@ -174,8 +175,6 @@ def _threads(threads: int | None) -> int:
 
 
 def _pattern_env(config: str) -> Any:
-    from gym_babble.envs import BabbleReachEnv
-
     return BabbleReachEnv(control="pattern", reward="sparse", body=json.loads(config))
 
 

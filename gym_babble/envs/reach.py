@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import gymnasium
 
 from gym_babble import _core
+from gym_babble.envs.one import OneEnv
 from gym_babble.envs.task import RENDER_MODES, ReachChoices
-from gym_babble.scenarios import apply_options
-from gym_babble.spaces import as_actions, need_reset
+from gym_babble.envs.window import Window
+from gym_babble.scenarios import read_options
+from gym_babble.spaces import as_actions
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import numpy as np
     from numpy.typing import NDArray
 
     from gym_babble.config import BodyLike
-    from gym_babble.envs.window import Window
 
 __all__ = ["BabbleReachEnv"]
 
@@ -27,10 +30,10 @@ class BabbleReachEnv(gymnasium.Env[Any, Any]):
     ## Description
 
     The first model of Caligiore et al. (2008). An arm moves in a horizontal plane: upper arm 15 cm,
-    forearm 13 cm, a stretched hand of 11.6 cm that reaches with its fingertips. Muscles (Eq. 2) pull
-    shoulder and elbow towards equilibrium points with a time constant of 0.8 s. A vertical cylinder
-    stands halfway between the start and the target. An eye above the arm has turned to the red
-    target (Eq. 1, from pixels) and stays on it.
+    forearm 13 cm, a stretched hand of 11.6 cm that reaches with its fingertips. Muscles (Eq. 2)
+    pull shoulder and elbow towards equilibrium points with a time constant of 0.8 s. A vertical
+    cylinder stands halfway between the start and the target. An eye above the arm has turned to
+    the red target (Eq. 1, from pixels) and stays on it.
 
     ## Action space
 
@@ -38,10 +41,10 @@ class BabbleReachEnv(gymnasium.Env[Any, Any]):
 
     | control | 0 | 1 | meaning |
     | --- | --- | --- | --- |
-    | `delta_posture` | shoulder | elbow | ±1 = ±5° on the muscles' equilibrium points, clipped to the joint ranges |
+    | `delta_posture` | shoulder | elbow | ±1 = ±5° on the equilibrium points, in the joint ranges |
     | `posture` | shoulder | elbow | the equilibrium points, −1…1 over the joint ranges |
     | `torque` | shoulder | elbow | T = action · 50 N·m − K_D q̇ |
-    | `pattern` | b1 | b2 | b = ½ + action/2, clipped to [.01, .99]: one whole movement of 11.2 s (Eq. 5, 6) |
+    | `pattern` | b1 | b2 | b = ½ + action/2 in [.01, .99]: a whole movement, 11.2 s (Eq. 5, 6) |
 
     Actions outside of [−1, 1] are clipped; NaN and infinity raise `ActionError`.
 
@@ -52,15 +55,15 @@ class BabbleReachEnv(gymnasium.Env[Any, Any]):
     | sense | size | low | high | unit |
     | --- | --- | --- | --- | --- |
     | `eye` | 2 | 0 | 1 | pan and tilt, share of range |
-    | `obstacle` | 2 | −π, −π/2 | π, π/2 | azimuth and elevation in the camera frame [rad]; lowest when there is none |
-    | `hand` | 2 | −π, −π/2 | π, π/2 | the same of the fingertip [rad] |
+    | `obstacle` | 2 | −π, −π/2 | π, π/2 | azimuth, elevation to the eye [rad]; lowest if none |
+    | `hand` | 2 | −π, −π/2 | π, π/2 | azimuth, elevation of the fingertip [rad] |
     | `arm` | 2 | 0 | 1 | shoulder and elbow, share of range |
     | `stretch` | 2 | −range | range | equilibrium point minus angle [rad] |
     | `time` | 1 | 0 | 1 | share of the episode |
 
-    `"flat"` is the same in one Box(11,), in this order. `"goal"` is a Dict of `observation` (flat),
-    `achieved_goal` (fingertip) and `desired_goal` (target), (x, y) [m]. `"retina"` is the senses and
-    the eye's image, `retina_size` × `retina_size` × 3, uint8.
+    `"flat"` is the same in one Box(11,), in this order. `"goal"` is a Dict of `observation`
+    (flat), `achieved_goal` (fingertip) and `desired_goal` (target), (x, y) [m]. `"retina"` is
+    the senses and the eye's image, `retina_size` × `retina_size` × 3, uint8.
 
     ## Rewards
 
@@ -92,6 +95,13 @@ class BabbleReachEnv(gymnasium.Env[Any, Any]):
 
     ## Arguments
 
+    Those of `__init__` below; each is a keyword of `gymnasium.make` too, but for
+    `max_episode_steps`: `gymnasium.make(id, max_episode_steps=n)` keeps it for its TimeLimit
+    wrapper, which truncates after n < 240 steps with the outcome still `running`.
+    `gymnasium.make_vec(id, max_episode_steps=n)` and `BabbleReachEnv(max_episode_steps=n)` set the
+    time limit itself: outcome `timeout`, and the sense `time` is a share of n. It has no effect in
+    `pattern` control.
+
     `reset(options=...)` takes `scenario` (see `gym_babble.scenarios`), or any of `start` (x, y),
     `target` (x, y) and `obstacle` (x, y), (x, y, radius) or None [m]; what is not given is drawn.
     Options hold for the resets that follow, until a reset that names others; `{}` names none.
@@ -101,7 +111,10 @@ class BabbleReachEnv(gymnasium.Env[Any, Any]):
     - v0: first.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": list(RENDER_MODES), "render_fps": 20}
+    metadata: dict[str, Any] = {  # noqa: RUF012 - declared by gymnasium.Env
+        "render_modes": list(RENDER_MODES),
+        "render_fps": 20,
+    }
 
     def __init__(
         self,
@@ -112,7 +125,7 @@ class BabbleReachEnv(gymnasium.Env[Any, Any]):
         reward: str = "progress",
         body: BodyLike = "paper",
         settled: bool = False,
-        max_episode_steps: int | None = None,
+        max_episode_steps: int = 240,
         camera: str = "third_person",
         width: int = 480,
         height: int = 480,
@@ -129,7 +142,7 @@ class BabbleReachEnv(gymnasium.Env[Any, Any]):
             body: A profile ("paper", "icub"), the path of a TOML or JSON file, a dict of what
                 differs from a profile, or a `gym_babble.Config`.
             settled: Whether success also needs the arm to have come to rest.
-            max_episode_steps: Time limit in control steps; 240, or 1 in `pattern` control.
+            max_episode_steps: Time limit in control steps; none is needed in `pattern` control.
             camera: "third_person" or "eye".
             width: Width of a picture [pixel].
             height: Height of a picture [pixel].
@@ -138,29 +151,31 @@ class BabbleReachEnv(gymnasium.Env[Any, Any]):
         Raises:
             ConfigError: An argument or a config field is not one there is.
         """
-        self._arguments: dict[str, Any] = dict(
-            obs=obs,
-            control=control,
-            reward=reward,
-            body=body,
-            settled=settled,
-            max_episode_steps=max_episode_steps,
-            render_mode=render_mode,
-            camera=camera,
-            width=width,
-            height=height,
-            retina_size=retina_size,
-        )
+        self._arguments: dict[str, Any] = {
+            "obs": obs,
+            "control": control,
+            "reward": reward,
+            "body": body,
+            "settled": settled,
+            "max_episode_steps": max_episode_steps,
+            "render_mode": render_mode,
+            "camera": camera,
+            "width": width,
+            "height": height,
+            "retina_size": retina_size,
+        }
         self.render_mode = render_mode
-        self._choices = ReachChoices(**self._arguments)
-        self._batch = _core.Batch(self._choices.task, 1)
+        self._make_core()
         self.observation_space = self._choices.observation_space
         self.action_space = self._choices.action_space
         self.metadata = {**type(self).metadata, "render_fps": self._choices.render_fps}
-        self._ready = False
         self._seeded = False
-        self._shown = 0
         self._window: Window | None = None
+
+    def _make_core(self) -> None:
+        self._choices = ReachChoices(**self._arguments)
+        self._batch = _core.Batch(self._choices.task, 1)
+        self._one = OneEnv(self._choices, self._batch, 0)
 
     @property
     def choices(self) -> ReachChoices:
@@ -178,17 +193,18 @@ class BabbleReachEnv(gymnasium.Env[Any, Any]):
 
         Raises:
             ConfigError: An option is unknown.
-            ScenarioError: The case asked for cannot be played.
+            ScenarioError: The case asked for cannot be played. The options are forgotten, and the
+                episode goes on.
         """
+        request = None if options is None else read_options(options, self._choices.task)
         super().reset(seed=seed)
         if seed is not None or not self._seeded:
             self._batch.seed(0, int(self.np_random.integers(2**63)))
             self._seeded = True
-        if options is not None:
-            apply_options(self._batch, 0, self._choices.task, options)
+        if request is not None:
+            self._batch.request(0, *request)
         self._batch.reset()
-        self._ready = True
-        self._shown = 0
+        self._one.begin()
         observation, _, _, _, info = self._look()
         if self.render_mode == "human":
             self._show()
@@ -211,7 +227,7 @@ class BabbleReachEnv(gymnasium.Env[Any, Any]):
         choices = self._choices
         senses, reward, terminated, truncated, outcome, success, ever, terms = self._batch.one()
         goals = self._batch.one_goals() if choices.obs == "goal" else []
-        retina = self._retina() if choices.obs == "retina" else None
+        retina = self._one.retina() if choices.obs == "retina" else None
         info = {
             "is_success": success,
             "ever_success": ever,
@@ -220,14 +236,16 @@ class BabbleReachEnv(gymnasium.Env[Any, Any]):
         }
         return choices.observation(senses, goals, retina), reward, terminated, truncated, info
 
-    def _retina(self) -> NDArray[np.uint8]:
-        size = self._choices.retina_size
-        return self._batch.render(0, "eye", size, size)
+    @property
+    def compute_reward(self) -> Callable[[Any, Any, Any], Any]:
+        """With obs="goal": reward for achieved and desired goals (2,) or (..., 2) [m]; info is unused.
 
-    def compute_reward(self, achieved_goal: Any, desired_goal: Any, info: Any) -> Any:
-        """Reward of the goal form for goals (2,) or (n, 2) [m]; `info` is not used."""
-        del info
-        return self._choices.goal_reward(achieved_goal, desired_goal)
+        Raises:
+            AttributeError: The observations have no goals; stable-baselines3 goes by this.
+        """
+        if self._choices.obs != "goal":
+            raise AttributeError("compute_reward is there with obs='goal'")
+        return self._choices.goal_reward
 
     def render(self) -> Any:
         """A frame (height, width, 3), or the frames since the last call, one a control step.
@@ -237,36 +255,14 @@ class BabbleReachEnv(gymnasium.Env[Any, Any]):
         Raises:
             gymnasium.error.ResetNeeded: There was no reset yet.
         """
-        if self.render_mode is None:
-            gymnasium.logger.warn(
-                "render() was called without a render_mode; make the environment with one, "
-                'e.g. gymnasium.make("BabbleReach-v0", render_mode="rgb_array")'
-            )
-            return None
-        if not self._ready:
-            raise need_reset()
-        if self.render_mode == "human":
+        if self.render_mode == "human" and self._one.ready:
             return self._show()
-        if self.render_mode == "rgb_array":
-            return self._frame(None)
-        return self._new_frames()
-
-    def _new_frames(self) -> list[NDArray[np.uint8]]:
-        end = len(self._batch.trail(0))
-        frames = [self._frame(k) for k in range(self._shown, end)]
-        self._shown = end
-        return frames
-
-    def _frame(self, moment: int | None) -> NDArray[np.uint8]:
-        width, height = self._choices.size
-        return self._batch.render(0, self._choices.camera, width, height, moment)
+        return self._one.render()
 
     def _show(self) -> None:
         if self._window is None:
-            from gym_babble.envs.window import Window
-
             self._window = Window(self._choices.size, self._choices.render_fps)
-        for frame in self._new_frames():
+        for frame in self._one.new_frames():
             self._window.show(frame)
 
     def close(self) -> None:
@@ -277,7 +273,7 @@ class BabbleReachEnv(gymnasium.Env[Any, Any]):
 
     def get_state(self) -> bytes:
         """The whole state, from which `set_state` continues bit for bit."""
-        return self._batch.save(0)
+        return self._one.get_state()
 
     def set_state(self, state: bytes) -> None:
         """Continues from a state of an environment with the same arguments.
@@ -285,32 +281,30 @@ class BabbleReachEnv(gymnasium.Env[Any, Any]):
         Raises:
             SnapshotError: The bytes are not such a state; the environment is as it was.
         """
-        self._batch.load(0, state)
-        self._ready = self._seeded = True
-        self._shown = len(self._batch.trail(0))
+        self._one.set_state(state)
+        self._seeded = True
 
     def state_hash(self) -> int:
         """A number that two states share only if they are the same to the bit."""
-        return self._batch.state_hash(0)
+        return self._one.state_hash()
 
     @property
     def scenario(self) -> dict[str, Any]:
         """Start, target and obstacle of the running episode [m], as `reset` options."""
-        return self._batch.case(0)
+        return self._one.scenario
 
     @property
     def trajectory(self) -> NDArray[np.float64]:
         """The way of the fingertip since the reset (k, 2) [m]; recorded with a render_mode."""
-        return self._batch.trail(0)
+        return self._one.trajectory
 
     def __getstate__(self) -> dict[str, Any]:
-        hidden = ("_batch", "_choices", "_window")
+        hidden = ("_batch", "_choices", "_one", "_window")
         state = {k: v for k, v in self.__dict__.items() if k not in hidden}
-        return {"attributes": state, "core": self.get_state()}
+        return {"attributes": state, "core": self._one.freeze()}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state["attributes"])
-        self._choices = ReachChoices(**self._arguments)
-        self._batch = _core.Batch(self._choices.task, 1)
-        self._batch.load(0, state["core"])
+        self._make_core()
+        self._one.thaw(state["core"])
         self._window = None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,8 +22,6 @@ RENDER_MODES = ("human", "rgb_array", "rgb_array_list")
 class ReachChoices:
     """The keyword arguments of an environment, checked, and what follows from them."""
 
-    PATTERN_STEPS: ClassVar[int] = 1
-
     def __init__(
         self,
         *,
@@ -32,7 +30,7 @@ class ReachChoices:
         reward: str,
         body: BodyLike,
         settled: bool,
-        max_episode_steps: int | None,
+        max_episode_steps: int,
         render_mode: str | None,
         camera: str,
         width: int,
@@ -43,23 +41,21 @@ class ReachChoices:
             raise ConfigError(f"render_mode = {render_mode!r} is not one of {RENDER_MODES}")
         if camera not in CAMERAS:
             raise ConfigError(f"camera = {camera!r} is not one of {CAMERAS}")
-        for name, edge in (("width", width), ("height", height)):
-            if not 16 <= edge <= 4096:
-                raise ConfigError(f"{name} = {edge} is not in [16, 4096] pixels")
-        if max_episode_steps is None:
-            max_episode_steps = self.PATTERN_STEPS if control == "pattern" else 240
-        if max_episode_steps < 1:
-            raise ConfigError(f"max_episode_steps = {max_episode_steps} is not at least 1")
+        _check_whole("width", width, 16, 4096, "pixels")
+        _check_whole("height", height, 16, 4096, "pixels")
+        _check_whole("retina_size", retina_size, 36, 2048, "pixels")
+        _check_whole("max_episode_steps", max_episode_steps, 1, 1_000_000, "control steps")
         self.task = _core.Task(
             config_json(body),
             control=control,
             reward=reward,
             goal=obs == "goal",
             settled=settled,
-            max_episode_steps=max_episode_steps,
+            # A movement is an episode, whatever limit was registered for other controls.
+            max_episode_steps=1 if control == "pattern" else max_episode_steps,
             record=render_mode is not None,
         )
-        self.obs, self.control = obs, control
+        self.obs, self.control, self.render_mode = obs, control, render_mode
         self.camera, self.size = camera, (width, height)
         self.retina_size = retina_size
         self.spec = Spec.of(self.task)
@@ -88,12 +84,23 @@ class ReachChoices:
             named["retina"] = retina  # type: ignore[assignment]
         return named
 
-    def goal_reward(self, achieved_goal: Any, desired_goal: Any) -> Any:
-        """Reward of the goal form for goals (2,) or (n, 2) [m]."""
-        achieved = np.asarray(achieved_goal, np.float32)
-        desired = np.asarray(desired_goal, np.float32)
-        rewards = self.task.goal_reward(np.atleast_2d(achieved), np.atleast_2d(desired))
-        return float(rewards[0]) if achieved.ndim == 1 else rewards
+    def goal_reward(self, achieved_goal: Any, desired_goal: Any, info: Any) -> Any:
+        """Reward of the goal form for goals (2,) or (..., 2) [m], broadcast; `info` is not used.
+
+        Raises:
+            ConfigError: The goals are not pairs of numbers, or their shapes do not fit.
+        """
+        del info
+        try:
+            achieved, desired = np.broadcast_arrays(
+                np.asarray(achieved_goal, np.float32), np.asarray(desired_goal, np.float32)
+            )
+        except (TypeError, ValueError) as error:
+            raise ConfigError(f"achieved_goal and desired_goal: {error}") from error
+        if achieved.shape[-1:] != (2,):
+            raise ConfigError(f"goals have shape {achieved.shape}, expected (..., 2) [m]")
+        rewards = self.task.goal_reward(achieved.reshape(-1, 2), desired.reshape(-1, 2))
+        return float(rewards[0]) if achieved.ndim == 1 else rewards.reshape(achieved.shape[:-1])
 
     @property
     def joint_range(self) -> NDArray[np.float64]:
@@ -110,3 +117,9 @@ class ReachChoices:
         """Lowest and highest b1 and b2."""
         low, high = self.task.b_range
         return low, high
+
+
+def _check_whole(name: str, value: Any, low: int, high: int, unit: str) -> None:
+    whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    if not whole or not low <= value <= high:
+        raise ConfigError(f"{name} = {value!r} is not a whole number in [{low}, {high}] {unit}")

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
-import gymnasium
 import numpy as np
 from gymnasium.utils.seeding import np_random
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from gym_babble import _core
+from gym_babble.envs.one import OneEnv
 from gym_babble.envs.task import RENDER_MODES, ReachChoices
 from gym_babble.errors import ConfigError
-from gym_babble.scenarios import apply_options
-from gym_babble.spaces import as_actions, need_reset
+from gym_babble.scenarios import Request, read_options
+from gym_babble.spaces import as_actions
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -40,10 +40,23 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
     `SAME_STEP` puts the ended episode's last observation and info in `infos["final_obs"]` and
     `infos["final_info"]`; with `DISABLED` ended environments are reset by
     `reset(options={"reset_mask": mask})`. `reset(options={"scenario": [...]})` takes one case for
-    all environments or a list with one for each; options hold for autoresets.
+    all environments or a list with one for each; options hold for autoresets, and a `reset_mask`
+    alone leaves them as they are.
+
+    Args:
+        num_envs: How many environments.
+        render_mode: "rgb_array", "rgb_array_list" or None.
+        autoreset_mode: When an ended episode begins anew.
+        threads: Threads that step the batch; one for each 64 environments, up to the number of
+            processors, if not given. Results do not depend on it.
+        obs, control, reward, body, settled, max_episode_steps, camera, width, height, retina_size:
+            As for `BabbleReachEnv`.
+
+    Raises:
+        ConfigError: An argument or a config field is not one there is.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {
+    metadata: dict[str, Any] = {  # noqa: RUF012 - declared by VectorEnv
         "render_modes": list(RENDER_MODES[1:]),
         "render_fps": 20,
         "autoreset_mode": AutoresetMode.NEXT_STEP,
@@ -61,36 +74,27 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
         reward: str = "progress",
         body: BodyLike = "paper",
         settled: bool = False,
-        max_episode_steps: int | None = None,
+        max_episode_steps: int = 240,
         camera: str = "third_person",
         width: int = 480,
         height: int = 480,
         retina_size: int = 84,
     ) -> None:
-        """Makes the batch; arguments as `BabbleReachEnv`, and:
-
-        Args:
-            num_envs: How many environments.
-            render_mode: "rgb_array", "rgb_array_list" or None.
-            autoreset_mode: When an ended episode begins anew.
-            threads: Threads that step the batch; one for each 64 environments, up to the number of
-                processors, if not given. Results do not depend on it.
-        """
         if render_mode == "human":
             raise ConfigError("render_mode = 'human' shows one environment; use gymnasium.make")
-        self._arguments: dict[str, Any] = dict(
-            obs=obs,
-            control=control,
-            reward=reward,
-            body=body,
-            settled=settled,
-            max_episode_steps=max_episode_steps,
-            render_mode=render_mode,
-            camera=camera,
-            width=width,
-            height=height,
-            retina_size=retina_size,
-        )
+        self._arguments: dict[str, Any] = {
+            "obs": obs,
+            "control": control,
+            "reward": reward,
+            "body": body,
+            "settled": settled,
+            "max_episode_steps": max_episode_steps,
+            "render_mode": render_mode,
+            "camera": camera,
+            "width": width,
+            "height": height,
+            "retina_size": retina_size,
+        }
         self.num_envs = num_envs
         self.render_mode = render_mode
         self._autoreset = _autoreset_mode(autoreset_mode)
@@ -106,9 +110,7 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
             "render_fps": choices.render_fps,
             "autoreset_mode": self._autoreset,
         }
-        self._ready = False
         self._seeded = False
-        self._shown = [0] * num_envs
 
     def _make_core(self) -> None:
         self._choices = ReachChoices(**self._arguments)
@@ -118,6 +120,7 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
             autoreset=self._autoreset.value,
             threads=self._threads,
         )
+        self._ones = [OneEnv(self._choices, self._batch, i) for i in range(self.num_envs)]
 
     @property
     def choices(self) -> ReachChoices:
@@ -143,18 +146,18 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
 
         Raises:
             ConfigError: An option is unknown or of a wrong length.
-            ScenarioError: A case asked for cannot be played.
+            ScenarioError: A case asked for cannot be played. The options are forgotten, and all
+                episodes go on.
         """
-        options = None if options is None else dict(options)
-        mask = self._reset_mask(options)
+        mask, requests = self._read_options(options)
         self._seed(seed, mask)
-        if options is not None:
-            for i, chosen in enumerate(self._each_options(options)):
-                if mask[i]:
-                    apply_options(self._batch, i, self._choices.task, chosen)
+        chosen = np.flatnonzero(mask).tolist()
+        if requests is not None:
+            for i in chosen:
+                self._batch.request(i, *requests[i])
         self._batch.reset(mask.tolist())
-        self._ready = True
-        self._shown = [0 if chosen else k for k, chosen in zip(self._shown, mask, strict=True)]
+        for i in chosen:
+            self._ones[i].begin()
         shown = self._batch.all()
         return self._observation(shown), self._infos(shown, mask)
 
@@ -175,10 +178,19 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
         observation = self._observation(shown)
         return observation, shown["reward"], shown["terminated"], shown["truncated"], infos
 
-    def _reset_mask(self, options: dict[str, Any] | None) -> NDArray[np.bool_]:
-        if options is None or "reset_mask" not in options:
-            return np.ones(self.num_envs, np.bool_)
-        mask = np.asarray(options.pop("reset_mask"))
+    def _read_options(self, options: Any) -> tuple[NDArray[np.bool_], list[Request] | None]:
+        """Which environments to reset, and what to ask of the cases of each."""
+        everywhere = np.ones(self.num_envs, np.bool_)
+        if options is None:
+            return everywhere, None
+        if not isinstance(options, Mapping) or "reset_mask" not in options:
+            return everywhere, self._requests(options)
+        mask = self._reset_mask(options["reset_mask"])
+        others = {name: value for name, value in options.items() if name != "reset_mask"}
+        return mask, self._requests(others) if others else None
+
+    def _reset_mask(self, given: Any) -> NDArray[np.bool_]:
+        mask = np.asarray(given)
         if mask.shape != (self.num_envs,) or mask.dtype != np.bool_ or not mask.any():
             raise ConfigError(
                 f"options['reset_mask'] has shape {mask.shape}, dtype {mask.dtype} and "
@@ -207,23 +219,22 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
                 self._batch.seed(i, int(np_random(value)[0].integers(2**63)))
         self._seeded = True
 
-    def _each_options(self, options: dict[str, Any]) -> list[Mapping[str, Any]]:
-        cases = options.get("scenario")
-        if cases is None or isinstance(cases, Mapping):
-            return [options] * self.num_envs
+    def _requests(self, options: Any) -> list[Request]:
+        task = self._choices.task
+        cases = options.get("scenario") if isinstance(options, Mapping) else None
+        if not isinstance(cases, Sequence) or isinstance(cases, str):
+            return [read_options(options, task)] * self.num_envs
         if len(cases) != self.num_envs:
             raise ConfigError(
                 f"options['scenario'] has {len(cases)} cases, expected one or {self.num_envs}"
             )
-        return [{**options, "scenario": case} for case in cases]
+        return [read_options({**options, "scenario": case}, task) for case in cases]
 
     def _observation(self, shown: Mapping[str, Any]) -> Any:
         goals = [shown["achieved_goal"], shown["desired_goal"]]
         retina = None
         if self._choices.obs == "retina":
-            size = self._choices.retina_size
-            images = [self._batch.render(i, "eye", size, size) for i in range(self.num_envs)]
-            retina = np.stack(images)
+            retina = np.stack([one.retina() for one in self._ones])
         return self._choices.observation(shown["senses"], goals, retina)
 
     def _infos(self, shown: Mapping[str, Any], mask: NDArray[np.bool_]) -> dict[str, Any]:
@@ -271,39 +282,33 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
             }
             self._add_info(infos, final, i)
 
-    def render(self) -> tuple[Any, ...] | None:
+    def render(self) -> tuple[Any, ...]:
         """A frame, or a list of the new ones, of each environment.
 
         Raises:
             gymnasium.error.ResetNeeded: There was no reset yet.
         """
-        if self.render_mode is None:
-            gymnasium.logger.warn("render() was called without a render_mode")
-            return None
-        if not self._ready:
-            raise need_reset()
-        if self.render_mode == "rgb_array":
-            return tuple(self._frame(i, None) for i in range(self.num_envs))
-        return tuple(self._new_frames(i) for i in range(self.num_envs))
+        return tuple(one.render() for one in self._ones)
 
-    def _new_frames(self, i: int) -> list[NDArray[np.uint8]]:
-        end = len(self._batch.trail(i))
-        # A trail shorter than what was shown belongs to an episode begun since.
-        first = self._shown[i] if self._shown[i] <= end else 0
-        self._shown[i] = end
-        return [self._frame(i, k) for k in range(first, end)]
+    @property
+    def compute_reward(self) -> Callable[[Any, Any, Any], Any]:
+        """With obs="goal": reward for achieved and desired goals (2,) or (..., 2) [m]; info is unused.
 
-    def _frame(self, i: int, moment: int | None) -> NDArray[np.uint8]:
-        width, height = self._choices.size
-        return self._batch.render(i, self._choices.camera, width, height, moment)
-
-    def compute_reward(self, achieved_goal: Any, desired_goal: Any, info: Any) -> Any:
-        """Reward of the goal form for goals (2,) or (n, 2) [m]; `info` is not used."""
-        del info
-        return self._choices.goal_reward(achieved_goal, desired_goal)
+        Raises:
+            AttributeError: The observations have no goals; stable-baselines3 goes by this.
+        """
+        if self._choices.obs != "goal":
+            raise AttributeError("compute_reward is there with obs='goal'")
+        return self._choices.goal_reward
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
-        """Calls a method, or gets an attribute, of each environment."""
+        """Calls a method, or gets an attribute, of each environment.
+
+        Raises:
+            ConfigError: The method steps, resets or closes; the batch does that.
+        """
+        if name in ("reset", "step", "close"):
+            raise ConfigError(f"call({name!r}): use {name}() of the vector environment")
         results = []
         for i in range(self.num_envs):
             value = self.of_one(i, name)
@@ -325,7 +330,7 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
             AttributeError: The environments have their own values of it, set at a reset.
             ConfigError: The values are not as many as the environments, or differ.
         """
-        if name in _OF_ONE or name in ("choices", "observation_space", "action_space"):
+        if hasattr(OneEnv, name) or name in ("choices", "observation_space", "action_space"):
             raise AttributeError(f"{name} cannot be set; make the environment anew")
         if isinstance(values, list | tuple):
             if len(values) != self.num_envs or any(value != values[0] for value in values[1:]):
@@ -335,8 +340,8 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
 
     def of_one(self, i: int, name: str) -> Any:
         """An attribute or method of environment i; what is not its own is the batch's."""
-        if name in _OF_ONE:
-            return _OF_ONE[name](self, i)
+        if hasattr(OneEnv, name) and not name.startswith("_"):
+            return getattr(self._ones[i], name)
         if name == "observation_space":
             return self.single_observation_space
         if name == "action_space":
@@ -345,7 +350,7 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
 
     def get_state(self) -> list[bytes]:
         """The state of each environment, from which `set_state` continues bit for bit."""
-        return [self._batch.save(i) for i in range(self.num_envs)]
+        return [one.get_state() for one in self._ones]
 
     def set_state(self, states: Sequence[bytes]) -> None:
         """Continues each environment from a state.
@@ -356,38 +361,26 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
         """
         if len(states) != self.num_envs:
             raise ConfigError(f"{len(states)} states, expected {self.num_envs}")
-        before = self.get_state()
+        before = [one.freeze() for one in self._ones]
         try:
-            for i, state in enumerate(states):
-                self._batch.load(i, state)
-        except ValueError:
-            for i, state in enumerate(before):
-                self._batch.load(i, state)
+            for one, state in zip(self._ones, states, strict=True):
+                one.set_state(state)
+        except (TypeError, ValueError):
+            for one, frozen in zip(self._ones, before, strict=True):
+                one.thaw(frozen)
             raise
-        self._ready = self._seeded = True
-        self._shown = [len(self._batch.trail(i)) for i in range(self.num_envs)]
+        self._seeded = True
 
     def __getstate__(self) -> dict[str, Any]:
-        state = {k: v for k, v in self.__dict__.items() if k not in ("_batch", "_choices")}
-        return {"attributes": state, "core": self.get_state()}
+        hidden = ("_batch", "_choices", "_ones")
+        state = {k: v for k, v in self.__dict__.items() if k not in hidden}
+        return {"attributes": state, "core": [one.freeze() for one in self._ones]}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state["attributes"])
         self._make_core()
-        for i, core in enumerate(state["core"]):
-            self._batch.load(i, core)
-
-
-_OF_ONE: dict[str, Callable[[BabbleReachVectorEnv, int], Any]] = {
-    "get_state": lambda env, i: lambda: env._batch.save(i),
-    "state_hash": lambda env, i: lambda: env._batch.state_hash(i),
-    "scenario": lambda env, i: env._batch.case(i),
-    "trajectory": lambda env, i: env._batch.trail(i),
-    "render": lambda env, i: lambda: (
-        env._frame(i, None) if env.render_mode == "rgb_array" else env._new_frames(i)
-    ),
-}
-"""What `call` and `get_attr` find in each environment, not in the batch."""
+        for one, core in zip(self._ones, state["core"], strict=True):
+            one.thaw(core)
 
 
 def default_threads(num_envs: int) -> int:

@@ -1,0 +1,108 @@
+"""One environment of a core batch: its state and its pictures."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import gymnasium
+
+from gym_babble.spaces import need_reset
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from gym_babble._core import Batch
+    from gym_babble.envs.task import ReachChoices
+
+__all__ = ["OneEnv"]
+
+
+class OneEnv:
+    """What belongs to environment `i` of a batch, and not to the batch as a whole."""
+
+    def __init__(self, choices: ReachChoices, batch: Batch, i: int) -> None:
+        self._choices = choices
+        self._batch = batch
+        self._i = i
+        self._shown = 0
+        self.ready = False
+
+    def get_state(self) -> bytes:
+        """The whole state, from which `set_state` continues bit for bit."""
+        return self._batch.save(self._i)
+
+    def set_state(self, state: bytes) -> None:
+        """Continues from a state of an environment with the same arguments.
+
+        Raises:
+            SnapshotError: The bytes are not such a state; the environment is as it was.
+        """
+        self._batch.load(self._i, state)
+        self._shown = len(self.trajectory)
+        self.ready = True
+
+    def freeze(self) -> tuple[bytes, bool, int]:
+        """All that a copy needs, before the first reset too."""
+        return self.get_state(), self.ready, self._shown
+
+    def thaw(self, frozen: tuple[bytes, bool, int]) -> None:
+        """Continues from what `freeze` gave."""
+        state, ready, shown = frozen
+        self.set_state(state)
+        self.ready, self._shown = ready, shown
+
+    def state_hash(self) -> int:
+        """A number that two states share only if they are the same to the bit."""
+        return self._batch.state_hash(self._i)
+
+    @property
+    def scenario(self) -> dict[str, Any]:
+        """Start, target and obstacle of the running episode [m], as `reset` options."""
+        return dict(self._batch.case(self._i))
+
+    @property
+    def trajectory(self) -> NDArray[np.float64]:
+        """The way of the fingertip since the reset (k, 2) [m]; recorded with a render_mode."""
+        return self._batch.trail(self._i)
+
+    def render(self) -> Any:
+        """A frame, or a list of those since the last call, as the render_mode says.
+
+        Raises:
+            gymnasium.error.ResetNeeded: There was no reset yet.
+        """
+        if self._choices.render_mode is None:
+            gymnasium.logger.warn(
+                "render() was called without a render_mode; make the environment with one, "
+                'e.g. gymnasium.make("BabbleReach-v0", render_mode="rgb_array")'
+            )
+            return None
+        if not self.ready:
+            raise need_reset()
+        if self._choices.render_mode == "rgb_array":
+            return self.frame(None)
+        return self.new_frames()
+
+    def begin(self) -> None:
+        """A new episode has begun, to be shown from its first frame on."""
+        self.ready = True
+        self._shown = 0
+
+    def new_frames(self) -> list[NDArray[np.uint8]]:
+        """The frames since the last call, one a control step."""
+        end = len(self.trajectory)
+        # A trail shorter than what was shown belongs to an episode begun since.
+        first = self._shown if self._shown <= end else 0
+        self._shown = end
+        return [self.frame(k) for k in range(first, end)]
+
+    def frame(self, moment: int | None) -> NDArray[np.uint8]:
+        """The picture (height, width, 3) now, or at a recorded moment."""
+        width, height = self._choices.size
+        return self._batch.render(self._i, self._choices.camera, width, height, moment)
+
+    def retina(self) -> NDArray[np.uint8]:
+        """The eye's image in obs="retina"."""
+        size = self._choices.retina_size
+        return self._batch.render(self._i, "eye", size, size)

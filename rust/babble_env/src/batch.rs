@@ -194,29 +194,33 @@ impl Batch {
     /// Begins a new episode in every environment for which `mask` is true.
     ///
     /// # Errors
-    /// The first error in the order of the environments.
+    /// The first error in the order of the environments, after which all of them are as they were.
     pub fn reset(&mut self, mask: &[bool]) -> Result<(), EnvError> {
         let task = &self.task;
-        let reset = |(slot, &chosen): (&mut Slot, &bool)| {
-            slot.last = None;
-            if chosen { slot.reset(task) } else { Ok(()) }
-        };
+        let draw =
+            |(slot, &chosen): (&mut Slot, &bool)| chosen.then(|| slot.env.draw(task)).transpose();
         let slots = &mut self.slots;
-        if self.pool.threads() == 1 {
-            return slots
-                .iter_mut()
-                .zip(mask)
-                .map(reset)
-                .fold(Ok(()), Result::and);
+        // All are drawn, also after an error, as each forgets what it was asked.
+        let drawn: Vec<_> = if self.pool.threads() == 1 {
+            slots.iter_mut().zip(mask).map(draw).collect()
+        } else {
+            self.pool.run(|| {
+                slots
+                    .par_iter_mut()
+                    .zip(mask.par_iter())
+                    .map(draw)
+                    .collect()
+            })?
+        };
+        let drawn = drawn.into_iter().collect::<Result<Vec<_>, EnvError>>()?;
+        for (slot, drawn) in self.slots.iter_mut().zip(drawn) {
+            slot.last = None;
+            if let Some(drawn) = drawn {
+                slot.env.begin(task, drawn);
+                slot.record = Record::of(task, &slot.env, Step::default());
+            }
         }
-        let results: Vec<_> = self.pool.run(|| {
-            slots
-                .par_iter_mut()
-                .zip(mask.par_iter())
-                .map(reset)
-                .collect()
-        })?;
-        results.into_iter().collect()
+        Ok(())
     }
 
     /// One step of every environment; `actions` holds two numbers for each.

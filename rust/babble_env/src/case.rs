@@ -11,6 +11,8 @@ use crate::task::ReachTask;
 
 /// How often a case is drawn before the config is called impossible.
 const MAX_TRIES: u32 = 100_000;
+/// The same for cases around an obstacle that a user placed, each of which is legal by itself.
+const MAX_TRIES_AROUND: u32 = 1_000;
 
 /// One case of the reaching task.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -59,7 +61,8 @@ impl ReachCase {
         let start = posture_for(task, "start", hand)?;
         posture_for(task, "target", target)?;
         if let Some(obstacle) = obstacle {
-            check_obstacle(task, &obstacle, start)?;
+            check_obstacle(&obstacle)?;
+            check_clear(task, &obstacle, start)?;
         }
         Ok(Self {
             start,
@@ -144,26 +147,29 @@ fn posture_for(
     )))
 }
 
-fn check_obstacle(task: &ReachTask, obstacle: &Obstacle, start: [f64; 2]) -> Result<(), EnvError> {
-    let problem = |problem: String| EnvError::Case {
+fn check_obstacle(obstacle: &Obstacle) -> Result<(), EnvError> {
+    if obstacle.centre.iter().all(|x| x.is_finite()) && (1e-4..=1.0).contains(&obstacle.radius) {
+        return Ok(());
+    }
+    Err(EnvError::Case {
         what: "obstacle",
-        problem,
-    };
-    if !(obstacle.centre.iter().all(|x| x.is_finite()) && (1e-4..=1.0).contains(&obstacle.radius)) {
-        return Err(problem(format!(
+        problem: format!(
             "centre {:?} m and radius {} m must be finite and the radius in [0.0001, 1]",
             obstacle.centre.as_slice(),
             obstacle.radius
-        )));
-    }
+        ),
+    })
+}
+
+fn check_clear(task: &ReachTask, obstacle: &Obstacle, start: [f64; 2]) -> Result<(), EnvError> {
     let clearance = obstacle.clearance(&task.arm, start);
-    if clearance <= 0.0 {
-        return Err(problem(format!(
-            "the arm at the start is {:.4} m inside of it",
-            -clearance
-        )));
+    if clearance > 0.0 {
+        return Ok(());
     }
-    Ok(())
+    Err(EnvError::Case {
+        what: "obstacle",
+        problem: format!("the arm at the start is {:.4} m inside of it", -clearance),
+    })
 }
 
 /// What a user asks of the cases to come. What is not asked for is drawn.
@@ -196,21 +202,53 @@ impl CaseRequest {
     /// [`EnvError::Case`] for a part that cannot be played, [`EnvError::NoLegalCase`] when the rest
     /// cannot be drawn.
     pub fn draw(&self, task: &ReachTask, stream: &mut Stream) -> Result<ReachCase, EnvError> {
-        let case = match (self.start, self.target) {
-            (None, None) => ReachCase::draw_legal(task, stream, Fidelity::QuasiStatic)?,
-            (Some(start), Some(target)) => return self.both_given(task, start, target),
-            (start, target) => draw_other_end(task, stream, start, target)?,
-        };
+        if let (Some(start), Some(target)) = (self.start, self.target) {
+            return self.both_given(task, start, target);
+        }
         match self.obstacle {
-            ObstacleRequest::Halfway => Ok(case),
+            ObstacleRequest::Halfway => self.draw_ends(task, stream),
             ObstacleRequest::Absent => Ok(ReachCase {
                 obstacle: None,
-                ..case
+                ..self.draw_ends(task, stream)?
             }),
-            ObstacleRequest::At(obstacle) => {
-                ReachCase::chosen(task, case.hand, case.target, Some(obstacle))
+            ObstacleRequest::At(obstacle) => self.draw_around(task, stream, obstacle),
+        }
+    }
+
+    fn draw_ends(&self, task: &ReachTask, stream: &mut Stream) -> Result<ReachCase, EnvError> {
+        match (self.start, self.target) {
+            (None, None) => ReachCase::draw_legal(task, stream, Fidelity::QuasiStatic),
+            (start, target) => draw_other_end(task, stream, start, target),
+        }
+    }
+
+    /// Draws the ends until the arm at both of them is clear of a placed obstacle.
+    fn draw_around(
+        &self,
+        task: &ReachTask,
+        stream: &mut Stream,
+        obstacle: Obstacle,
+    ) -> Result<ReachCase, EnvError> {
+        check_obstacle(&obstacle)?;
+        if let Some(start) = self.start {
+            check_clear(task, &obstacle, posture_for(task, "start", start)?)?;
+        }
+        for _ in 0..MAX_TRIES_AROUND {
+            let case = self.draw_ends(task, stream)?;
+            let end = posture_for(task, "target", case.target)?;
+            if [case.start, end]
+                .iter()
+                .all(|&q| obstacle.clearance(&task.arm, q) > 0.0)
+            {
+                return Ok(ReachCase {
+                    obstacle: Some(obstacle),
+                    ..case
+                });
             }
         }
+        Err(EnvError::NoLegalCase {
+            tries: MAX_TRIES_AROUND,
+        })
     }
 
     fn both_given(

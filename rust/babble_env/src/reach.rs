@@ -77,6 +77,17 @@ pub struct Step {
 pub struct Reach {
     state: ReachState,
     sight: Sight,
+    /// What the user asks of the cases from the next reset on, if it can be played.
+    asked: Option<CaseRequest>,
+}
+
+/// A new episode that was drawn and not begun yet.
+#[derive(Debug, Clone)]
+pub struct Drawn {
+    case: ReachCase,
+    gaze: Gaze,
+    request: CaseRequest,
+    stream: Stream,
 }
 
 /// What the eye sees that stays the same within an episode.
@@ -133,6 +144,7 @@ impl Reach {
         Self {
             sight: Sight::new(task, gaze, None),
             state,
+            asked: None,
         }
     }
 
@@ -142,6 +154,7 @@ impl Reach {
         Self {
             sight: Sight::new(task, state.gaze, state.case.obstacle.as_ref()),
             state,
+            asked: None,
         }
     }
 
@@ -156,21 +169,49 @@ impl Reach {
         self.state.stream = stream;
     }
 
-    /// Sets what the following resets ask of their cases.
+    /// Sets what the following resets ask of their cases; forgotten if the next one cannot play it.
     pub fn request(&mut self, request: CaseRequest) {
-        self.state.request = request;
+        self.asked = Some(request);
     }
 
-    /// Begins a new episode: draws its case, puts the arm at its start, lets the eye find the target.
+    /// Begins a new episode.
     ///
     /// # Errors
-    /// [`EnvError`] when the case asked for cannot be played; the episode stays as it was, but for
-    /// its stream.
+    /// As [`Self::draw`].
     pub fn reset(&mut self, task: &ReachTask) -> Result<(), EnvError> {
-        let case = self.state.request.draw(task, &mut self.state.stream)?;
-        let gaze = task.foveate(&case)?;
+        let drawn = self.draw(task)?;
+        self.begin(task, drawn);
+        Ok(())
+    }
+
+    /// Draws the case of a new episode and lets the eye find its target.
+    ///
+    /// # Errors
+    /// [`EnvError`] when the case asked for cannot be played; the episode stays as it was.
+    pub fn draw(&mut self, task: &ReachTask) -> Result<Drawn, EnvError> {
+        let request = self.asked.take().unwrap_or(self.state.request);
+        let mut stream = self.state.stream.clone();
+        let case = request.draw(task, &mut stream)?;
+        Ok(Drawn {
+            gaze: task.foveate(&case)?,
+            case,
+            request,
+            stream,
+        })
+    }
+
+    /// Puts the arm at the start of an episode that was drawn.
+    pub fn begin(&mut self, task: &ReachTask, drawn: Drawn) {
+        let Drawn {
+            case,
+            gaze,
+            request,
+            stream,
+        } = drawn;
         self.sight = Sight::new(task, gaze, case.obstacle.as_ref());
         let state = &mut self.state;
+        state.request = request;
+        state.stream = stream;
         state.distance = case.distance();
         state.arm = ArmState::at_rest(case.start);
         state.equilibrium = case.start;
@@ -185,7 +226,6 @@ impl Reach {
         if task.options.record {
             state.trail.push(case.start);
         }
-        Ok(())
     }
 
     /// One control step, or one whole movement in `pattern` control. `action` is finite and has two
@@ -362,7 +402,7 @@ fn reward_terms(task: &ReachTask, before: f64, state: &ReachState) -> [f64; 3] {
         Reward::Progress => [
             (before - state.distance) / PROGRESS_UNIT_M,
             success,
-            -failure,
+            0.0 - failure,
         ],
         Reward::Sparse => [success, 0.0, 0.0],
     }

@@ -238,7 +238,7 @@ class BabbleReachEnv(gymnasium.Env[Any, Any]):
 
     @property
     def compute_reward(self) -> Callable[[Any, Any, Any], Any]:
-        """With obs="goal": reward for achieved and desired goals (2,) or (..., 2) [m]; info is unused.
+        """Reward for achieved and desired goals (2,) or (..., 2) [m], with obs="goal".
 
         Raises:
             AttributeError: The observations have no goals; stable-baselines3 goes by this.

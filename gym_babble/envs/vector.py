@@ -263,6 +263,9 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
         indices, last = ended
         goals = (last["achieved_goal"], last["desired_goal"])
         names = self._choices.spec.reward_terms
+        for name in names:
+            # The new episodes have had no reward yet; what the step gave stands in `final_info`.
+            infos["reward_terms"][name][indices] = 0.0
         for k, i in enumerate(indices.tolist()):
             retina = None
             if self._choices.obs == "retina":
@@ -292,7 +295,7 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
 
     @property
     def compute_reward(self) -> Callable[[Any, Any, Any], Any]:
-        """With obs="goal": reward for achieved and desired goals (2,) or (..., 2) [m]; info is unused.
+        """Reward for achieved and desired goals (2,) or (..., 2) [m], with obs="goal".
 
         Raises:
             AttributeError: The observations have no goals; stable-baselines3 goes by this.

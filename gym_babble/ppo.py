@@ -87,7 +87,8 @@ def _pattern(*senses: str) -> Preset:
             "gamma": 0.0,
             "gae_lambda": 1.0,
         },
-        policy={"log_std_init": -1.5},
+        # From -1.5 on: at 0 most actions are clipped, and the policy stays there.
+        policy={"activation_fn": torch.nn.ReLU, "net_arch": [128, 128], "log_std_init": -1.5},
     )
 
 

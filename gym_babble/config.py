@@ -210,6 +210,13 @@ class Config:
         config: Config = _build(cls, json.loads(_core.complete_config(text)))
         return config
 
+    @property
+    def movement_steps(self) -> int:
+        """Control steps of one whole movement: T, and the time to settle."""
+        muscles, reach = self.body.muscles, self.reach
+        settle_s = reach.settle_time_constants * muscles.kd / muscles.kp
+        return round((reach.movement_s + settle_s) / reach.control_period_s)
+
     def to_json(self) -> str:
         """The whole config as JSON."""
         return json.dumps(asdict(self))

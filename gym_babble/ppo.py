@@ -17,8 +17,7 @@ from gymnasium import spaces
 from gym_babble.config import Config
 from gym_babble.errors import ConfigError, MissingExtraError
 from gym_babble.evaluation import evaluate
-from gym_babble.progress import track
-from gym_babble.sb3 import BabbleVecEnv
+from gym_babble.sb3 import BabbleVecEnv, ProgressBar
 from gym_babble.scenarios import scenarios
 
 try:
@@ -191,11 +190,10 @@ def train_ppo(
             return played.rate("success")
 
         rollouts = math.ceil((steps or chosen.steps) / (model.n_steps * env.num_envs))
-        course = _Course(rollouts, validations if cases else 0, validate, bar=progress_bar)
-        model.learn(
-            rollouts * model.n_steps * env.num_envs,
-            callback=CallbackList([course] if callback is None else [course, callback]),
-        )
+        course = _Course(rollouts, validations if cases else 0, validate)
+        callbacks = [course, *([ProgressBar("PPO")] if progress_bar else [])]
+        callbacks += [callback] if callback is not None else []
+        model.learn(rollouts * model.n_steps * env.num_envs, callback=CallbackList(callbacks))
         env.close()
     return TrainedPPO(
         agent=model,
@@ -209,25 +207,19 @@ def train_ppo(
 
 
 class _Course(BaseCallback):
-    """Counts episodes, keeps the clock and the learning curve, and moves the progress bar."""
+    """Counts episodes, keeps the clock and the learning curve."""
 
-    def __init__(
-        self, rollouts: int, validations: int, validate: Callable[[], float], *, bar: bool
-    ) -> None:
+    def __init__(self, rollouts: int, validations: int, validate: Callable[[], float]) -> None:
         super().__init__()
         self.episodes = 0
         self.seconds = 0.0
         self.curve: list[CurvePoint] = []
         self._validate = validate
         self._ends = {math.ceil(rollouts * k / validations) for k in range(1, validations + 1)}
-        self._bar_shown, self._rollouts, self._rollout = bar, rollouts, 0
-        self._bar: Iterator[int] = iter(())
+        self._rollout = 0
         self._began = 0.0
 
     def _on_training_start(self) -> None:
-        rollout = self.model.n_steps * self.training_env.num_envs  # type: ignore[attr-defined]
-        total = rollout * self._rollouts
-        self._bar = track([rollout] * self._rollouts, "PPO", total=total, show=self._bar_shown)
         self._began = perf_counter()
 
     def _on_rollout_start(self) -> None:
@@ -243,7 +235,6 @@ class _Course(BaseCallback):
 
     def _pass_rollout(self) -> None:
         """What is due between two rollouts: the last one has been learnt from."""
-        next(self._bar, None)
         self.seconds += perf_counter() - self._began
         if self._rollout in self._ends:
             self.curve.append(CurvePoint(self.num_timesteps, self.seconds, self._validate()))
@@ -281,10 +272,7 @@ def _control_steps(env: BabbleVecEnv) -> int:
     choices = env.get_attr("choices")[0]
     if choices.control != "pattern":
         return 1
-    config = Config.from_json(choices.task.config())
-    muscles, reach = config.body.muscles, config.reach
-    settle = reach.settle_time_constants * muscles.kd / muscles.kp
-    return round((reach.movement_s + settle) / reach.control_period_s)
+    return Config.from_json(choices.task.config()).movement_steps
 
 
 @contextmanager

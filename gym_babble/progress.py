@@ -11,10 +11,14 @@ __all__ = ["track"]
 
 
 def track(parts: Iterable[int], text: str, *, total: int, show: bool) -> Iterator[int]:
-    """Yields the parts of a whole, showing how much of `total` is done and the time left."""
+    """Yields the parts of a whole, showing how much of `total` is done and the time left.
+
+    The bar goes to stderr: stdout belongs to results.
+    """
     if not show:
         yield from parts
         return
+    from rich.console import Console
     from rich.progress import (
         BarColumn,
         MofNCompleteColumn,
@@ -32,7 +36,7 @@ def track(parts: Iterable[int], text: str, *, total: int, show: bool) -> Iterato
         TextColumn("left"),
         TimeRemainingColumn(),
     )
-    with Progress(*columns) as progress:
+    with Progress(*columns, console=Console(stderr=True)) as progress:
         task = progress.add_task(text, total=total)
         for part in parts:
             yield part

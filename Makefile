@@ -13,6 +13,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 STAMPS := $(VENV)/stamps
+RLLIB := .venv-rllib
 
 # One interpreter for every build of pyo3, so that none undoes another.
 export PYO3_PYTHON := $(CURDIR)/$(BIN)/python
@@ -23,7 +24,7 @@ EXTENSION_SOURCES := Cargo.toml Cargo.lock $(shell find rust -type f -not -name 
 	$(foreach folder,$(NOT_IN_EXTENSION),-not -path '*/$(folder)/*'))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint lint-rust lint-python bench constraints clean
+.PHONY: help setup demo test lint lint-rust lint-python bench rllib constraints clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -52,12 +53,15 @@ bench: setup ## Measure: criterion in Rust, pytest-benchmark in Python
 	cargo bench
 	$(BIN)/python -m pytest -o python_files='bench_*.py' --benchmark-only
 
+rllib: $(RLLIB)/installed ## Train a little with RLlib, which needs an environment of its own
+	$(RLLIB)/bin/python examples/rllib_ppo.py
+
 constraints: $(STAMPS)/dependencies ## Pin the newest releases that pyproject.toml allows, for every Python and platform
 	$(BIN)/uv pip compile pyproject.toml --all-extras --universal --python-version 3.10 --upgrade \
 		--no-annotate --custom-compile-command 'make constraints' --quiet --output-file constraints.txt
 
 clean: ## Remove what the other targets made
-	rm -rf $(VENV) target report dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
+	rm -rf $(VENV) $(RLLIB) target report dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
 	find gym_babble tests -name __pycache__ -prune -exec rm -rf {} +
 	rm -f gym_babble/_core*.so
 
@@ -79,4 +83,13 @@ $(STAMPS)/extension: $(STAMPS)/dependencies $(EXTENSION_SOURCES)
 	@printf '%s\n' $(RUST_VERSION) "$$(cargo --version | cut -d ' ' -f 2)" | sort -V -C || \
 		{ echo "error: Rust $(RUST_VERSION) or newer is needed, and this is $$(cargo --version): rustup update" >&2; exit 1; }
 	env -u CONDA_PREFIX VIRTUAL_ENV='$(CURDIR)/$(VENV)' $(BIN)/maturin develop --release
+	@touch $@
+
+# The package as users install it, a wheel, beside the Gymnasium that RLlib pins.
+$(RLLIB)/installed: $(STAMPS)/extension $(shell find gym_babble -name '*.py')
+	@test -x $(RLLIB)/bin/pip || "$(PYTHON)" -m venv $(RLLIB)
+	rm -rf $(RLLIB)/wheel
+	$(BIN)/maturin build --release --out $(RLLIB)/wheel
+	$(RLLIB)/bin/python -m pip install --disable-pip-version-check --quiet 'ray[rllib]>=2.60,<3' torch $(RLLIB)/wheel/*.whl
+	$(RLLIB)/bin/python -m pip install --disable-pip-version-check --quiet --force-reinstall --no-deps $(RLLIB)/wheel/*.whl
 	@touch $@

@@ -1,0 +1,28 @@
+"""PPO (stable-baselines3) on reaching: train a preset, test it on Table I, keep the model.
+
+python examples/ppo_reach.py                          # whole movements: 25 s with the test
+python examples/ppo_reach.py --preset delta_posture   # step by step: about a minute
+"""
+
+import argparse
+
+from gym_babble import evaluate, scenarios
+from gym_babble.ppo import PRESETS, train_ppo
+
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("--preset", choices=PRESETS, default="pattern")
+parser.add_argument("--steps", type=int, help="steps to learn from; the preset's if not given")
+parser.add_argument("--cases", type=int, default=1_000, help="cases of Table I to be tested on")
+parser.add_argument("--save", help="file for the model, which PPO.load reads")
+arguments = parser.parse_args()
+
+trained = train_ppo(arguments.preset, steps=arguments.steps, progress_bar=True)
+for point in trained.curve:
+    print(f"{point.steps:8d} steps  {point.seconds:6.1f} s  success {point.success:.3f}")
+if arguments.save:
+    trained.agent.save(arguments.save)
+
+cases = scenarios("table1", arguments.cases)
+result = evaluate(trained.agent, trained.env_id, cases, **trained.env_kwargs)
+low, high = result.interval("success")
+print(f"success {result.rate('success'):.3f} [{low:.3f}, {high:.3f}]")

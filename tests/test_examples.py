@@ -1,0 +1,45 @@
+"""Every example runs, on a small budget, and ends in the line that its reader waits for."""
+
+import re
+import runpy
+import sys
+
+import pytest
+import torch
+
+RUNS = {
+    "hebb_reach.py": (
+        "--movements 250 --cases 50",
+        r"success 0\.\d+ \[0\.\d+, .+\] \(paper: 0\.67\)",
+    ),
+    "custom_body.py": (
+        "--movements 100 --cases 30 --kd 10 40",
+        r"K_D 40: lag 0\.80 s, legal 0\.\d+, success 0\.\d+, .+",
+    ),
+    "ppo_reach.py": ("--steps 512 --cases 20", r"success 0\.\d+ \[0\.\d+, .+\]"),
+    "sensitivity.py": (
+        "--seeds 1 --cases 20 --movements 50",
+        r"\| 2,000 movements( \| \d\.\d{3}){4} \|",
+    ),
+    "sac_her.py": ("--steps 2400 --cases 20", r"success 0\.\d+ \[0\.\d+, .+\]"),
+}
+ELSEWHERE = {"rllib_ppo.py"}
+"""Has its own environment: `make rllib`."""
+
+# What a run prints depends on its bits, and two threads of PyTorch on a busy machine are slow.
+torch.set_num_threads(1)
+
+
+def test_every_example_runs_somewhere(repository):
+    found = {path.name for path in (repository / "examples").glob("*.py")}
+    assert found == RUNS.keys() | ELSEWHERE
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_last_line(name, repository, monkeypatch, capsys):
+    arguments, expected = RUNS[name]
+    path = repository / "examples" / name
+    monkeypatch.setattr(sys, "argv", [str(path), *arguments.split()])
+    runpy.run_path(str(path), run_name="__main__")
+    last = capsys.readouterr().out.strip().splitlines()[-1]
+    assert re.fullmatch(expected, last), last

@@ -7,6 +7,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 import warnings
 from typing import TYPE_CHECKING, Any
@@ -16,15 +17,17 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 
 from gym_babble.errors import ConfigError, MissingExtraError
+from gym_babble.progress import track
 
 try:
+    from stable_baselines3.common.callbacks import BaseCallback
     from stable_baselines3.common.monitor import Monitor
     from stable_baselines3.common.vec_env import VecEnv
 except ImportError as error:
     raise MissingExtraError("stable-baselines3", "sb3") from error
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
     from stable_baselines3.common.vec_env.base_vec_env import (
@@ -33,7 +36,7 @@ if TYPE_CHECKING:
         VecEnvStepReturn,
     )
 
-__all__ = ["BabbleVecEnv"]
+__all__ = ["BabbleVecEnv", "ProgressBar"]
 
 
 class BabbleVecEnv(VecEnv):
@@ -181,6 +184,28 @@ class BabbleVecEnv(VecEnv):
         if name in ("reset", "step"):
             raise AttributeError(f"{name} is the batch's: the environments are stepped together")
         return self.envs.of_one(i, name)
+
+
+class ProgressBar(BaseCallback):
+    """A progress bar with the time left: `model.learn(steps, callback=ProgressBar())`."""
+
+    def __init__(self, text: str = "learning") -> None:
+        super().__init__()
+        self._text = text
+        self._bar: Iterator[int] = iter(())
+
+    def _on_training_start(self) -> None:
+        total = self.locals["total_timesteps"] - self.model.num_timesteps
+        n = self.training_env.num_envs
+        self._bar = track([n] * math.ceil(total / n), self._text, total=total, show=True)
+        next(self._bar, None)
+
+    def _on_step(self) -> bool:
+        next(self._bar, None)
+        return True
+
+    def _on_training_end(self) -> None:
+        self._bar = iter(())
 
 
 def _as_scenario(options: dict[str, Any]) -> dict[str, Any]:

@@ -1,0 +1,341 @@
+"""The native batch: a real vector environment, equal to single ones to the bit."""
+
+from __future__ import annotations
+
+import copy
+import multiprocessing
+import pickle
+import threading
+import time
+import warnings
+
+import gymnasium
+import numpy as np
+import pytest
+from comparing import IDS, assert_same, drawn_actions, info_of, one_of
+from gymnasium.vector import AutoresetMode, SyncVectorEnv, VectorEnv
+from gymnasium.wrappers import vector as wrappers
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gym_babble import scenarios
+from gym_babble.envs import BabbleReachEnv, BabbleReachVectorEnv
+
+MODES = tuple(AutoresetMode)
+FORMS = (
+    {"obs": "senses"},
+    {"obs": "flat", "control": "torque"},
+    {"obs": "goal", "reward": "sparse", "max_episode_steps": 30},
+    {"obs": "retina", "retina_size": 36, "max_episode_steps": 9},
+    {"obs": "senses", "control": "pattern", "reward": "sparse"},
+)
+names = pytest.mark.parametrize("form", FORMS, ids=lambda form: "-".join(map(str, form.values())))
+
+
+def make_sync(n, mode, form):
+    return SyncVectorEnv([lambda: BabbleReachEnv(**form)] * n, autoreset_mode=mode)
+
+
+def without_resets(mode):
+    return mode is AutoresetMode.DISABLED
+
+
+def vector_rollout(envs, actions, options=None):
+    """All that a batch gives, with masked resets where it does not reset itself."""
+    seen = [envs.reset(seed=5, options=options)]
+    for action in actions:
+        seen.append(envs.step(action))
+        ended = seen[-1][2] | seen[-1][3]
+        if without_resets(envs.metadata["autoreset_mode"]) and ended.any():
+            seen.append(envs.reset(options={"reset_mask": ended}))
+    return seen
+
+
+@names
+@pytest.mark.parametrize("mode", MODES, ids=lambda mode: mode.name)
+def test_the_batch_equals_gymnasiums_batch_of_singles(mode, form):
+    native = BabbleReachVectorEnv(4, autoreset_mode=mode, **form)
+    sync = make_sync(4, mode, form)
+    assert native.observation_space == sync.observation_space
+    assert native.action_space == sync.action_space
+    assert native.single_observation_space == sync.single_observation_space
+    actions = drawn_actions(native.action_space, 20 if form["obs"] == "retina" else 280, 8)
+    ours, theirs = vector_rollout(native, actions), vector_rollout(sync, actions)
+    assert_same(ours, theirs)
+    ends = sum((step[2] | step[3]).sum() for step in ours if len(step) == 5)
+    assert ends >= 4
+
+
+@pytest.mark.parametrize("env_id", IDS)
+def test_environment_i_is_the_single_one_seeded_s_plus_i(env_id):
+    envs = gymnasium.make_vec(env_id, num_envs=5)
+    actions = drawn_actions(envs.action_space, 600, 0)
+    seen = [envs.reset(seed=100)] + [envs.step(action) for action in actions]
+    for i in range(5):
+        env = gymnasium.make(env_id)
+        observation, info = env.reset(seed=100 + i)
+        ended, episodes = False, 0
+        for k in range(len(seen)):
+            if k and ended:
+                (observation, info), ended, episodes = env.reset(), False, episodes + 1
+                reward = 0.0
+            elif k:
+                observation, reward, terminated, truncated, info = env.step(actions[k - 1][i])
+                ended = terminated or truncated
+                assert (terminated, truncated) == (seen[k][2][i], seen[k][3][i])
+            assert_same(observation, one_of(seen[k][0], i))
+            assert_same(info, info_of(seen[k][-1], i))
+            assert not k or reward == seen[k][1][i]
+        assert episodes >= 2
+
+
+def test_threads_do_not_change_a_bit():
+    seen = {}
+    for threads in (1, 2, 8):
+        envs = BabbleReachVectorEnv(130, threads=threads, autoreset_mode="SameStep")
+        actions = drawn_actions(envs.action_space, 60, 0)
+        seen[threads] = [envs.reset(seed=1)] + [envs.step(action) for action in actions]
+        assert envs.threads == threads
+    assert_same(seen[1], seen[2])
+    assert_same(seen[1], seen[8])
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    mode=st.sampled_from(MODES),
+    moment=st.integers(0, 30),
+    n=st.integers(1, 5),
+    how=st.sampled_from(["state", "pickle", "deepcopy"]),
+)
+def test_a_batch_continues_from_its_states_and_copies(mode, moment, n, how):
+    def make():
+        return BabbleReachVectorEnv(n, autoreset_mode=mode, max_episode_steps=11)
+
+    def play(envs, actions):
+        seen = []
+        for action in actions:
+            seen.append(envs.step(action))
+            ended = seen[-1][2] | seen[-1][3]
+            if without_resets(mode) and ended.any():
+                seen.append(envs.reset(options={"reset_mask": ended}))
+        return seen
+
+    envs = make()
+    actions = drawn_actions(envs.action_space, 60, moment)
+    envs.reset(seed=moment)
+    play(envs, actions[:moment])
+    if how == "state":
+        other = make()
+        other.reset(seed=99)
+        other.set_state(envs.get_state())
+    else:
+        other = copy.deepcopy(envs) if how == "deepcopy" else pickle.loads(pickle.dumps(envs))  # noqa: S301
+    assert other.call("state_hash") == envs.call("state_hash")
+    assert_same(play(envs, actions[moment:]), play(other, actions[moment:]))
+
+
+def test_unseeded_resets_reproduce_after_a_seed():
+    envs = BabbleReachVectorEnv(3)
+    seen = []
+    for seed in (4, 5, 4):
+        envs.reset(seed=seed)
+        seen.append([envs.reset()[0] for _ in range(3)])
+    assert_same(seen[0], seen[2])
+    assert not np.array_equal(seen[0][0]["eye"], seen[1][0]["eye"])
+    envs.reset(seed=[4, None, 6])
+    assert_same(one_of(envs.reset()[0], 0), one_of(seen[0][0], 0))
+
+
+def test_each_autoreset_draws_a_new_case():
+    envs = BabbleReachVectorEnv(2, control="pattern", autoreset_mode="SameStep")
+    envs.reset(seed=0)
+    actions = drawn_actions(envs.action_space, 20, 0)
+    targets = {envs.step(action)[0]["eye"].tobytes() for action in actions}
+    assert len(targets) == 20
+
+
+def test_options_hold_for_autoresets_until_others_are_named():
+    cases = scenarios("table1", 2, seed=3)
+    envs = BabbleReachVectorEnv(2, control="pattern", autoreset_mode="SameStep")
+
+    def targets():
+        return [case["target"] for case in envs.get_attr("scenario")]
+
+    wanted = [case["target"] for case in cases]
+    envs.reset(seed=0, options={"scenario": cases})
+    for action in drawn_actions(envs.action_space, 4, 0):
+        assert targets() == wanted
+        envs.step(action)
+    envs.reset(options={"scenario": cases[1]})
+    assert targets() == [wanted[1]] * 2
+    envs.reset(options={"scenario": cases[0], "reset_mask": np.array([True, False])})
+    assert targets() == wanted
+    envs.reset(options={"reset_mask": np.array([True, True])})
+    assert targets() == wanted
+    envs.reset(options={})
+    assert not set(targets()) & set(wanted)
+
+
+def test_what_was_returned_never_changes():
+    envs = BabbleReachVectorEnv(3, max_episode_steps=5, autoreset_mode="SameStep")
+    actions = drawn_actions(envs.action_space, 12, 0)
+    kept = [envs.reset(seed=0)] + [envs.step(action) for action in actions]
+    frozen = copy.deepcopy(kept)
+    envs.reset(seed=1)
+    for action in actions:
+        envs.step(action)
+    assert_same(frozen, kept)
+
+
+def test_attributes_and_methods_of_each_environment():
+    envs = BabbleReachVectorEnv(3, render_mode="rgb_array", width=32, height=24)
+    sync = SyncVectorEnv([lambda: BabbleReachEnv(render_mode="rgb_array", width=32, height=24)] * 3)
+    envs.reset(seed=2)
+    sync.reset(seed=2)
+    for name in ("scenario", "trajectory", "render_mode", "action_space", "observation_space"):
+        assert_same(envs.get_attr(name), sync.get_attr(name))
+    for name in ("state_hash", "get_state", "render"):
+        assert_same(envs.call(name), sync.call(name))
+    assert_same(envs.render(), sync.render())
+    envs.call("set_state", envs.get_state()[1])
+    assert len(set(envs.call("state_hash"))) == 1
+    envs.set_attr("note", [1, 1, 1])
+    assert envs.get_attr("note") == (1, 1, 1)
+    with pytest.raises(AttributeError):
+        envs.get_attr("no_such_thing")
+    with pytest.raises(ValueError, match="note"):
+        envs.set_attr("note", [1, 2])
+    with pytest.raises(AttributeError, match="scenario"):
+        envs.set_attr("scenario", [1, 2, 3])
+    for name in ("reset", "step", "close"):
+        with pytest.raises(ValueError, match=name):
+            envs.call(name)
+    envs.close()
+    envs.close()
+    assert envs.closed
+
+
+def test_the_goals_reward_is_there_as_in_single_environments():
+    envs = gymnasium.make_vec(IDS[2], num_envs=3)
+    sync = gymnasium.make_vec(IDS[2], num_envs=3, vectorization_mode="sync")
+    goals = np.zeros(2), np.zeros((4, 2))
+    assert_same(envs.call("compute_reward", *goals, {}), sync.call("compute_reward", *goals, {}))
+
+
+def test_frames_of_each_environment_since_the_last_call():
+    envs = BabbleReachVectorEnv(2, render_mode="rgb_array_list", width=32, height=32)
+    envs.reset(seed=0)
+    assert [len(frames) for frames in envs.render()] == [1, 1]
+    for _ in range(4):
+        envs.step(np.zeros((2, 2), np.float32))
+    assert [len(frames) for frames in envs.render()] == [4, 4]
+    assert [len(frames) for frames in envs.render()] == [0, 0]
+
+
+@pytest.mark.parametrize("mode", [None, "sync", "async", "vector_entry_point"])
+def test_make_vec_makes_it_in_every_mode(mode):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        envs = gymnasium.make_vec(IDS[0], num_envs=3, vectorization_mode=mode)
+    assert isinstance(envs.unwrapped, BabbleReachVectorEnv) == (mode not in ("sync", "async"))
+    assert isinstance(envs, VectorEnv)
+    assert envs.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
+    single = BabbleReachVectorEnv(3)
+    assert_same(envs.reset(seed=1), single.reset(seed=1))
+    for action in drawn_actions(single.action_space, 30, 0):
+        assert_same(envs.step(action), single.step(action))
+    envs.close()
+
+
+@pytest.mark.parametrize("context", ["fork", "spawn"])
+@pytest.mark.parametrize("shared_memory", [True, False])
+def test_gymnasiums_processes_work(context, shared_memory):
+    envs = gymnasium.make_vec(
+        IDS[2],
+        num_envs=2,
+        vectorization_mode="async",
+        vector_kwargs={"context": context, "shared_memory": shared_memory},
+    )
+    native = gymnasium.make_vec(IDS[2], num_envs=2)
+    assert_same(native.reset(seed=1), envs.reset(seed=1))
+    for action in drawn_actions(native.action_space, 5, 0):
+        assert_same(native.step(action), envs.step(action))
+    assert_same(native.call("state_hash"), envs.call("state_hash"))
+    envs.close()
+
+
+def test_make_vec_sets_the_time_limit_itself():
+    envs = gymnasium.make_vec(IDS[0], num_envs=2, max_episode_steps=3)
+    envs.reset(seed=0)
+    for _ in range(3):
+        observation, _, _, truncated, infos = envs.step(np.zeros((2, 2), np.float32))
+    assert truncated.all()
+    assert list(infos["outcome"]) == ["timeout"] * 2
+    assert (observation["time"] == 1).all()
+
+
+def step_in_child(envs, action, queue):
+    queue.put([envs.step(action), envs.step(action)])
+
+
+def test_a_forked_child_steps_a_batch_whose_threads_ran_in_its_parent():
+    envs = BabbleReachVectorEnv(64, threads=2)
+    envs.reset(seed=0)
+    action = drawn_actions(envs.action_space, 1, 0)[0]
+    envs.step(action)
+    context = multiprocessing.get_context("fork")
+    queue = context.Queue()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # Python 3.12: threads and fork.
+        child = context.Process(target=step_in_child, args=(envs, action, queue))
+        child.start()
+    try:
+        theirs = queue.get(timeout=20)
+    finally:
+        child.join(timeout=5)
+        if child.is_alive():
+            child.kill()
+    assert_same(theirs, [envs.step(action), envs.step(action)])
+
+
+def test_other_python_threads_run_while_the_batch_steps():
+    envs = BabbleReachVectorEnv(512, control="pattern", threads=1)
+    envs.reset(seed=0)
+    action = drawn_actions(envs.action_space, 1, 0)[0]
+    begun, stop, moments = threading.Event(), threading.Event(), []
+
+    def watch():
+        while not stop.is_set():
+            moments.append(time.perf_counter())
+            begun.set()
+            time.sleep(0.001)
+
+    watcher = threading.Thread(target=watch)
+    watcher.start()
+    begun.wait()
+    started = time.perf_counter()
+    envs._batch.step(action)
+    ended = time.perf_counter()
+    stop.set()
+    watcher.join()
+    # With the lock held not one moment lies within the step.
+    within = [moment for moment in moments if started + 0.002 < moment < ended - 0.002]
+    assert len(within) >= 3, (len(moments), ended - started)
+
+
+def test_gymnasiums_vector_wrappers_work():
+    envs = gymnasium.make_vec(IDS[0], num_envs=3, max_episode_steps=20)
+    envs = wrappers.RecordEpisodeStatistics(envs)
+    envs = wrappers.NormalizeReward(wrappers.FlattenObservation(envs))
+    assert envs.single_observation_space.shape == (11,)
+    observation, _ = envs.reset(seed=0)
+    episodes = 0
+    for action in drawn_actions(envs.action_space, 60, 0):
+        assert observation in envs.observation_space
+        observation, _, terminated, truncated, infos = envs.step(action)
+        ended = terminated | truncated
+        assert ended.any() == ("episode" in infos)
+        if ended.any():
+            assert (infos["episode"]["l"][ended] <= 20).all()
+            episodes += ended.sum()
+    assert episodes >= 6

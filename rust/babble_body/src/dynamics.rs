@@ -140,30 +140,35 @@ impl Dynamics {
     ) -> ArmState {
         let [a, b, d] = [mass[0] + diagonal, mass[1], mass[2] + diagonal];
         let determinant = a * d - b * b;
-        let dv = [
+        let mut dv = [
             (d * rhs[0] - b * rhs[1]) / determinant,
             (a * rhs[1] - b * rhs[0]) / determinant,
         ];
-        let mut next = ArmState {
-            q: state.q,
-            v: [state.v[0] + dv[0], state.v[1] + dv[1]],
-        };
+        let end = |i: usize, dv: f64| state.q[i] + dt * (state.v[i] + dv);
+        let stops = |i: usize, dv: f64| end(i, dv) < self.lower[i] || end(i, dv) > self.upper[i];
+        // A joint at the end of its range stops there, inelastically: Δv = −v is then given, and
+        // the other joint's row of the equation is solved with it.
+        match [stops(0, dv[0]), stops(1, dv[1])] {
+            [true, false] => dv[1] = (rhs[1] + b * state.v[0]) / d,
+            [false, true] => dv[0] = (rhs[0] + b * state.v[1]) / a,
+            _ => {}
+        }
+        let mut next = state;
         for i in 0..2 {
-            next.q[i] += dt * next.v[i];
-            // Inelastic stops at the ends of the joint ranges.
-            if next.q[i] < self.lower[i] || next.q[i] > self.upper[i] {
-                next.q[i] = next.q[i].clamp(self.lower[i], self.upper[i]);
-                next.v[i] = 0.0;
-            }
+            next.q[i] = end(i, dv[i]).clamp(self.lower[i], self.upper[i]);
+            next.v[i] = if stops(i, dv[i]) {
+                0.0
+            } else {
+                state.v[i] + dv[i]
+            };
         }
         next
     }
 }
 
-/// Sums the bones as solid rods of the body's density; the palm is as high as it is.
+/// Sums the bones as solid rods of the body's density.
 fn inertia(body: &Body) -> Inertia {
     let (bones, _) = skeleton::bones(body, &skeleton::posture(&body.joints, [0.0, 0.0]));
-    let radius = body.arm.half_width_m;
     let mut total = Inertia {
         upper: 0.0,
         fore: 0.0,
@@ -180,17 +185,9 @@ fn inertia(body: &Body) -> Inertia {
             elbow
         };
         let (a, b) = (bone.a.xy() - origin, bone.b.xy() - origin);
-        let section = match bone.part {
-            Part::Palm => 2.0 * radius * body.hand.palm_height_m,
-            // A digit's radius is bounded by the spacing of the fingers.
-            Part::Digit => {
-                std::f64::consts::PI * radius.min(0.4 * body.hand.finger_spacing_m).powi(2)
-            }
-            Part::UpperArm | Part::Forearm => std::f64::consts::PI * radius * radius,
-        };
+        let (section, across) = cross_section(body, bone.part);
         let mass = body.arm.density_kg_m3 * section * (bone.b - bone.a).norm();
-        let moment = mass
-            * ((a.norm_squared() + a.dot(&b) + b.norm_squared()) / 3.0 + radius * radius / 4.0);
+        let moment = mass * ((a.norm_squared() + a.dot(&b) + b.norm_squared()) / 3.0 + across);
         let centre = (a + b) / 2.0;
         if bone.part == Part::UpperArm {
             total.upper += moment;
@@ -205,4 +202,21 @@ fn inertia(body: &Body) -> Inertia {
     }
     total.fore_centre = total.fore_centre.map(|moment| moment / total.fore_mass);
     total
+}
+
+/// Area of a bone's cross-section \[m²\] and its mean square distance from the bone's line in the
+/// plane of motion \[m²\]: a box for the palm, circles for the rest.
+fn cross_section(body: &Body, part: Part) -> (f64, f64) {
+    let half_width = body.arm.half_width_m;
+    let radius = match part {
+        Part::Palm => {
+            let area = 2.0 * half_width * body.hand.palm_height_m;
+            return (area, half_width * half_width / 3.0);
+        }
+        // A digit's radius is bounded by the spacing of the fingers.
+        Part::Digit => half_width.min(0.4 * body.hand.finger_spacing_m),
+        Part::UpperArm | Part::Forearm => half_width,
+    };
+    let square = radius * radius;
+    (std::f64::consts::PI * square, square / 4.0)
 }

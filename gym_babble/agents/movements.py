@@ -83,6 +83,11 @@ class MovementAgent(ABC):
                 "use pattern, posture or delta_posture"
             )
 
+    @property
+    def choices(self) -> ReachChoices:
+        """What the environment of this agent was made with."""
+        return self._choices
+
     @abstractmethod
     def decide(self, senses: NDArray[np.float32]) -> NDArray[np.float64]:
         """Parameters (b1, b2) of movements (n, 2), for flat senses (n, 11)."""

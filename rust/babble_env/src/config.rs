@@ -123,8 +123,8 @@ impl Config {
         };
         let text = fs::read_to_string(path).map_err(|error| named(error.to_string()))?;
         match path.extension().and_then(|ending| ending.to_str()) {
-            Some("toml") => Self::from_toml(&text),
-            Some("json") => Self::from_json(&text),
+            Some("toml") => Self::from_toml(&text).map_err(|error| within_file(path, error)),
+            Some("json") => Self::from_json(&text).map_err(|error| within_file(path, error)),
             _ => Err(named("a config file ends in .toml or .json".to_owned())),
         }
     }
@@ -246,6 +246,17 @@ fn merge(base: &mut Value, overrides: Value, path: &mut Vec<String>) -> Result<(
         path.pop();
     }
     Ok(())
+}
+
+/// The same error with the file's path before the field's.
+fn within_file(path: &Path, error: EnvError) -> EnvError {
+    match error {
+        EnvError::Config { field, problem } => EnvError::Config {
+            field: format!("{}: {field}", path.display()),
+            problem,
+        },
+        other => other,
+    }
 }
 
 fn document(error: &impl ToString) -> EnvError {

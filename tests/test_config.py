@@ -1,0 +1,240 @@
+"""Configs: the dataclasses, the profiles in Rust, and documents that change them."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, fields, is_dataclass, replace
+
+import pytest
+
+from gym_babble import Config, _core, scenarios
+from gym_babble.config import Arm, Cylinder, config_json
+from gym_babble.envs import BabbleReachEnv
+from gym_babble.errors import BabbleError, ConfigError
+
+PAPER = json.loads(_core.profile_config("paper"))
+ICUB = json.loads(_core.profile_config("icub"))
+
+
+def leaves(value, path=""):
+    """Every number of a config with its path."""
+    if isinstance(value, dict):
+        for name, part in value.items():
+            yield from leaves(part, f"{path}.{name}" if path else name)
+    elif isinstance(value, list):
+        for i, part in enumerate(value):
+            yield from leaves(part, f"{path}[{i}]")
+    elif value is not None:  # Rust leaves out what is not there.
+        yield path, value
+
+
+def test_the_dataclasses_defaults_are_rusts_paper_profile():
+    ours = json.loads(Config().to_json())
+    assert dict(leaves(ours)) == dict(leaves(PAPER))
+    assert len(ours["body"]["joints"]) == 26
+
+
+def test_every_field_of_the_document_is_a_field_of_the_dataclasses():
+    def compare(kind, document, path):
+        assert {f.name for f in fields(kind)} == set(document), path
+        for f in fields(kind):
+            value = getattr(kind, f.name)
+            if is_dataclass(value):
+                compare(value, document[f.name], f"{path}.{f.name}")
+
+    compare(Config(), PAPER, "config")
+
+
+@pytest.mark.parametrize("profile", ["paper", "icub"])
+def test_configs_round_trip(profile):
+    config = Config.profile_named(profile)
+    assert config.profile == profile
+    assert Config.from_json(config.to_json()) == config
+    assert json.loads(config_json(config)) == json.loads(_core.profile_config(profile))
+    assert config_json(profile) == config_json(config)
+
+
+def test_the_icub_differs_where_the_docs_say():
+    icub = Config.profile_named("icub")
+    assert icub.body.obstacle.radius_m == 0.02
+    assert icub.reach.distance_m == (0.1, 0.2)
+    shoulder, elbow = (icub.body.joints[name] for name in ("shoulder", "elbow"))
+    assert (shoulder.lower_deg, shoulder.upper_deg) == (-10, 95)
+    assert (elbow.lower_deg, elbow.upper_deg) == (15, 106)
+    assert all(
+        joint.locked_deg == 0
+        for name, joint in icub.body.joints.items()
+        if name not in ("shoulder", "elbow")
+    )
+
+
+def test_file_dict_and_dataclass_are_one_config(tmp_path):
+    changes = {
+        "profile": "icub",
+        "body": {
+            "arm": {"upper_arm_m": 0.2},
+            "obstacle": {"radius_m": 0.03},
+            "joints": {"elbow": {"upper_deg": 120.0}},
+        },
+        "reach": {"movement_s": 5.0, "distance_m": [0.1, 0.15]},
+    }
+    (tmp_path / "body.json").write_text(json.dumps(changes))
+    (tmp_path / "body.toml").write_text(
+        'profile = "icub"\n[body.arm]\nupper_arm_m = 0.2\n[body.obstacle]\nradius_m = 0.03\n'
+        "[body.joints.elbow]\nupper_deg = 120.0\n"
+        "[reach]\nmovement_s = 5.0\ndistance_m = [0.1, 0.15]\n"
+    )
+    icub = Config.profile_named("icub")
+    elbow = replace(icub.body.joints["elbow"], upper_deg=120.0)
+    made = replace(
+        icub,
+        body=replace(
+            icub.body,
+            arm=Arm(upper_arm_m=0.2),
+            obstacle=Cylinder(radius_m=0.03),
+            joints={**icub.body.joints, "elbow": elbow},
+        ),
+        reach=replace(icub.reach, movement_s=5.0, distance_m=(0.1, 0.15)),
+    )
+    bodies = [changes, tmp_path / "body.json", str(tmp_path / "body.toml"), made]
+    assert len({config_json(body) for body in bodies}) == 1
+    assert Config.load(tmp_path / "body.toml") == made
+    firsts = []
+    for body in bodies:
+        env = BabbleReachEnv(body=body)
+        env.reset(seed=0)
+        firsts.append(env.scenario)
+    assert firsts.count(firsts[0]) == 4
+    assert firsts[0]["obstacle"][2] == 0.03
+
+
+def test_a_config_reaches_the_simulation():
+    env = BabbleReachEnv(body={"reach": {"control_period_s": 0.1}})
+    assert env.metadata["render_fps"] == 10
+    assert BabbleReachEnv.metadata["render_fps"] == 20
+    stiff = BabbleReachEnv(body={"body": {"muscles": {"kp": 200.0}}}, control="posture")
+    soft = BabbleReachEnv(control="posture")
+    options = {"start": (0.1, 0.2), "target": (0.2, 0.2), "obstacle": None}
+    moved = []
+    for env in (stiff, soft):
+        before, _ = env.reset(options=options)
+        after, *_ = env.step([1, 1])
+        moved.append((after["arm"] - before["arm"]).sum())
+    assert moved[0] > 2 * moved[1] > 0
+
+
+UNKNOWN = [
+    ({"speed": 1}, "speed"),
+    ({"body": {"leg": {}}}, "body.leg"),
+    ({"body": {"arm": {"length": 1}}}, "length"),
+    ({"body": {"joints": {"knee": {"lower_deg": 0, "upper_deg": 1}}}}, "knee"),
+    ({"body": {"joints": {"elbow": {"middle_deg": 1}}}}, "middle_deg"),
+    ({"body": {"eye": {"lens": 1}}}, "lens"),
+    ({"reach": {"speed": 1}}, "reach.speed"),
+    ({1: 2}, "1"),
+]
+
+
+@pytest.mark.parametrize(("body", "named"), UNKNOWN, ids=lambda x: str(x)[:30])
+def test_an_unknown_field_is_named_at_each_level(body, named):
+    with pytest.raises(ConfigError, match=named):
+        config_json(body)
+
+
+OUT_OF_BOUNDS = [
+    ({"body": {"arm": {"upper_arm_m": -0.1}}}, "upper_arm_m"),
+    ({"body": {"arm": {"forearm_m": 0}}}, "forearm_m"),
+    ({"body": {"arm": {"half_width_m": 5}}}, "half_width_m"),
+    ({"body": {"hand": {"finger_m": [0.01, 0.02]}}}, "finger_m"),
+    ({"body": {"muscles": {"kd": -1}}}, "kd"),
+    ({"body": {"muscles": {"kp": 0}}}, "kp"),
+    ({"body": {"joints": {"elbow": {"lower_deg": 90, "upper_deg": 10}}}}, "elbow"),
+    ({"body": {"joints": {"elbow": {"lower_deg": "wide"}}}}, "lower_deg"),
+    ({"body": {"joints": {"shoulder": {"locked_deg": 0}}}}, "shoulder"),
+    ({"body": {"eye": {"position_m": [0, 0]}}}, "position_m"),
+    ({"body": {"eye": {"field_deg": 190}}}, "field_deg"),
+    ({"body": {"eye": {"pixels": 0}}}, "pixels"),
+    ({"body": {"eye": {"frame": "listing"}}}, "frame"),
+    ({"body": {"eye": {"pan_deg": [10, -10]}}}, "pan_deg"),
+    ({"body": {"obstacle": {"radius_m": 0}}}, "radius_m"),
+    ({"body": {"target": {"radius_m": float("nan")}}}, None),
+    ({"body": {"target": {"radius_m": None}}}, "radius_m"),
+    ({"reach": {"distance_m": [0.2, 0.1]}}, "distance_m"),
+    ({"reach": {"b_range": [0, 1]}}, "b_range"),
+    ({"reach": {"physics_steps": 0}}, "physics_steps"),
+    ({"reach": {"physics_steps": 2.5}}, "physics_steps"),
+    ({"reach": {"control_period_s": float("inf")}}, None),
+    ({"reach": {"success_radius_m": 0.5}}, "success_radius_m"),
+    ({"reach": []}, "reach"),
+    ({"body": "big"}, "body"),
+    ({"profile": "giant"}, "giant"),
+    ({"profile": 3}, "profile"),
+    ({"body": {1, 2}}, None),
+]
+
+
+@pytest.mark.parametrize(("body", "named"), OUT_OF_BOUNDS, ids=lambda x: str(x)[:50])
+def test_what_cannot_be_is_refused_by_name(body, named):
+    with pytest.raises(ConfigError, match=named) as caught:
+        BabbleReachEnv(body=body)
+    assert isinstance(caught.value, ValueError)
+    assert isinstance(caught.value, BabbleError)
+
+
+@pytest.mark.parametrize("body", [None, 3, ["paper"], b"paper", Arm(), "Paper", "", object])
+def test_a_body_of_another_kind_is_refused(body):
+    with pytest.raises(ConfigError, match="body"):
+        BabbleReachEnv(body=body)
+
+
+def test_a_dataclass_with_wrong_values_is_refused():
+    for broken in (
+        replace(Config(), reach=None),
+        replace(Config(), body=replace(Config().body, arm=Arm(upper_arm_m="long"))),
+        replace(Config(), body=replace(Config().body, arm=Arm(upper_arm_m={1, 2}))),
+    ):
+        with pytest.raises(ConfigError):
+            BabbleReachEnv(body=broken)
+
+
+def test_broken_files_are_refused_by_their_path(tmp_path):
+    for name, content in (
+        ("cut.json", b'{"profile": "pap'),
+        ("list.json", b"[1, 2]"),
+        ("cut.toml", b"[body\nupper = "),
+        ("bytes.toml", b"\xff\xfe\x00"),
+        ("unknown.toml", b"[reach]\nspeed = 1\n"),
+        ("body.yaml", b"profile: paper"),
+    ):
+        path = tmp_path / name
+        path.write_bytes(content)
+        with pytest.raises(ConfigError, match=name.replace(".", r"\.")):
+            BabbleReachEnv(body=path)
+    with pytest.raises(ConfigError, match="missing"):
+        BabbleReachEnv(body="missing.toml")
+    with pytest.raises(ConfigError):
+        BabbleReachEnv(body=tmp_path)
+
+
+def test_an_eye_that_cannot_see_the_arms_plane_says_so():
+    env = BabbleReachEnv(body={"body": {"eye": {"position_m": [0, 0, -1]}}})
+    with pytest.raises(ConfigError, match="no red pixel"):
+        env.reset(seed=0)
+
+
+def test_a_config_with_no_room_for_a_case_says_so():
+    body = {
+        "body": {"obstacle": {"radius_m": 0.124}},
+        "reach": {"distance_m": [0.08, 0.0801]},
+    }
+    env = BabbleReachEnv(body=body)
+    with pytest.raises(BabbleError, match="no legal movement"):
+        env.reset(seed=0)
+    with pytest.raises(BabbleError, match="no legal movement"):
+        scenarios("table1", 1, body=body)
+
+
+def test_the_config_is_whole_in_asdict_of_a_profile():
+    assert dict(leaves(json.loads(json.dumps(asdict(Config.profile_named("icub")))))) == dict(
+        leaves(ICUB)
+    )

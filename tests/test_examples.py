@@ -17,6 +17,10 @@ RUNS = {
         r"K_D 40: lag 0\.80 s, legal 0\.\d+, success 0\.\d+, .+",
     ),
     "ppo_reach.py": ("--steps 512 --cases 20", r"success 0\.\d+ \[0\.\d+, .+\]"),
+    "ppo_study.py": (
+        "--out {folder} --presets pattern delta_posture --seeds 1 --steps 512 --cases 20",
+        r"\| delta_posture \| 512 \| 1 \| .+ \|",
+    ),
     "sensitivity.py": (
         "--seeds 1 --cases 20 --movements 50",
         r"\| 2,000 movements( \| \d\.\d{3}){4} \|",
@@ -36,10 +40,10 @@ def test_every_example_runs_somewhere(repository):
 
 
 @pytest.mark.parametrize("name", RUNS)
-def test_last_line(name, repository, monkeypatch, capsys):
+def test_last_line(name, repository, monkeypatch, capsys, tmp_path):
     arguments, expected = RUNS[name]
     path = repository / "examples" / name
-    monkeypatch.setattr(sys, "argv", [str(path), *arguments.split()])
+    monkeypatch.setattr(sys, "argv", [str(path), *arguments.format(folder=tmp_path).split()])
     runpy.run_path(str(path), run_name="__main__")
     last = capsys.readouterr().out.strip().splitlines()[-1]
     assert re.fullmatch(expected, last), last

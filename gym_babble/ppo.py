@@ -81,7 +81,7 @@ def _pattern(*senses: str) -> Preset:
         settings={
             "n_steps": 8,
             "batch_size": 128,
-            "n_epochs": 10,
+            "n_epochs": 20,
             "learning_rate": 1e-3,
             "gamma": 0.0,
             "gae_lambda": 1.0,
@@ -174,8 +174,7 @@ def train_ppo(
         ConfigError: There is no preset of that name, or a number is out of bounds.
     """
     chosen = _preset(preset)
-    if steps is not None and steps < 1:
-        raise ConfigError(f"steps = {steps} is not at least 1")
+    _check(steps, validation_cases, validations)
     with _one_thread():
         env = BabbleVecEnv(chosen.env_id, chosen.num_envs, body=body, **chosen.env_kwargs)
         model = _model(chosen, env, seed)
@@ -247,6 +246,15 @@ def _preset(preset: str | Preset) -> Preset:
     if preset not in PRESETS:
         raise ConfigError(f"preset = {preset!r} is not one of {', '.join(PRESETS)}")
     return PRESETS[preset]
+
+
+def _check(steps: int | None, validation_cases: int, validations: int) -> None:
+    if steps is not None and steps < 1:
+        raise ConfigError(f"steps = {steps} is not at least 1")
+    if validation_cases < 0:
+        raise ConfigError(f"validation_cases = {validation_cases} is not at least 0")
+    if validations < 1:
+        raise ConfigError(f"validations = {validations} is not at least 1")
 
 
 def _model(preset: Preset, env: BabbleVecEnv, seed: int) -> PPO:

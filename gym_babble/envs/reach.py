@@ -58,7 +58,7 @@ class BabbleReachEnv(gymnasium.Env[Any, Any]):
     | `obstacle` | 2 | −π, −π/2 | π, π/2 | azimuth, elevation to the eye [rad]; lowest if none |
     | `hand` | 2 | −π, −π/2 | π, π/2 | azimuth, elevation of the fingertip [rad] |
     | `arm` | 2 | 0 | 1 | shoulder and elbow, share of range |
-    | `stretch` | 2 | −range | range | equilibrium point minus angle [rad] |
+    | `stretch` | 2 | −range | range | shoulder and elbow: equilibrium point minus angle [rad] |
     | `time` | 1 | 0 | 1 | share of the episode |
 
     `"flat"` is the same in one Box(11,), in this order. `"goal"` is a Dict of `observation`

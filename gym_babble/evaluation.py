@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import gymnasium
 import numpy as np
 
+from gym_babble.errors import ConfigError
 from gym_babble.progress import track
 from gym_babble.scenarios import Scenario, scenarios
 
@@ -84,9 +85,15 @@ def evaluate(
         deterministic: Passed to `predict`.
         progress_bar: Show a bar with the time left.
         env_kwargs: Further arguments of the environment.
+
+    Raises:
+        ConfigError: There are no cases, or an argument is not one there is.
+        ScenarioError: A case cannot be played on this body.
     """
     if cases is None:
         cases = scenarios("table1", 1000, body=body)
+    if not cases:
+        raise ConfigError("cases is empty, expected at least one")
     groups = [cases[i : i + ENVS] for i in range(0, len(cases), ENVS)]
     result = Evaluation((), (), ())
     sizes = (len(group) for group in groups)

@@ -62,6 +62,7 @@ def scenarios(
         raise ConfigError(f"protocol = {protocol!r} is not one of {', '.join(PROTOCOLS)}")
     if n is not None and n < 1:
         raise ConfigError(f"n = {n} is not at least 1")
+    check_seed(seed)
     task = _core.Task(config_json(body))
     if protocol == "table1":
         cases = dict(enumerate(task.table1(1000 if n is None else n, seed, split, threads)))
@@ -78,6 +79,12 @@ def scenarios(
         for i, case in cases.items()
     ]
     return numbered[:n]
+
+
+def check_seed(seed: int) -> None:
+    """Raises `ConfigError` unless the core can take the seed."""
+    if not 0 <= seed < 2**64:
+        raise ConfigError(f"seed = {seed} is not in [0, 2^64)")
 
 
 class Request(NamedTuple):

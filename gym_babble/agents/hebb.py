@@ -15,6 +15,7 @@ from gym_babble.agents.movements import EnvLike, MovementAgent
 from gym_babble.envs import BabbleReachEnv
 from gym_babble.errors import AgentFileError, ConfigError
 from gym_babble.progress import track
+from gym_babble.scenarios import check_seed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -59,8 +60,7 @@ class HebbBabbling(MovementAgent):
         config: Mapping[str, Any] | None = None,
     ) -> None:
         super().__init__(env)
-        if not 0 <= seed < 2**64:
-            raise ConfigError(f"seed = {seed} is not in [0, 2^64)")
+        check_seed(seed)
         numbers = json.loads(_core.Hebb.variant_config(variant))
         _merge(numbers, config or {}, "config")
         self._hebb = _core.Hebb(json.dumps(numbers), seed, quasi_static, _threads(threads))

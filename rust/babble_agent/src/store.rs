@@ -1,5 +1,5 @@
 //! A learned agent as a safetensors file: weights and averages as tensors, all else as JSON in the
-//! header's metadata. Nothing in such a file is code.
+//! header's metadata, which begins with a checksum of the rest. Nothing in such a file is code.
 
 use std::collections::HashMap;
 
@@ -8,12 +8,15 @@ use babble_env::movement::Fidelity;
 use safetensors::tensor::{Dtype, TensorView};
 use safetensors::{SafeTensors, serialize};
 use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::Xxh3;
 
 use crate::error::AgentError;
 use crate::hebb::{Hebb, HebbConfig};
 
 const KEY: &str = "gym_babble";
 const VERSION: u32 = 1;
+/// What the metadata begins with; the checksum of 16 hexadecimal digits and `",` follow.
+const CHECKSUM: &str = "{\"checksum\":\"";
 /// Names of the tensors.
 const TENSORS: [&str; 3] = ["weights", "a_bar", "g_bar"];
 
@@ -82,7 +85,10 @@ pub fn save(hebb: &Hebb, metadata: &Metadata) -> Result<Vec<u8>, AgentError> {
             TensorView::new(Dtype::F32, shape, data).map_err(|e| file(&e))?,
         ));
     }
-    let text = serde_json::to_string(metadata).map_err(|e| file(&e))?;
+    let text = with_checksum(
+        &serde_json::to_string(metadata).map_err(|e| file(&e))?,
+        &data,
+    );
     serialize(views, Some(HashMap::from([(KEY.to_owned(), text)]))).map_err(|e| file(&e))
 }
 
@@ -101,7 +107,8 @@ pub fn load(bytes: &[u8]) -> Result<(Hebb, Metadata), AgentError> {
         .ok_or_else(|| AgentError::File {
             problem: format!("a safetensors file, but without {KEY:?} in its metadata"),
         })?;
-    let metadata: Metadata = serde_json::from_str(text).map_err(|e| file(&e))?;
+    let text = without_checksum(text, &tensors)?;
+    let metadata: Metadata = serde_json::from_str(&text).map_err(|e| file(&e))?;
     if metadata.version != VERSION {
         return Err(AgentError::File {
             problem: format!("version {} is not {VERSION}", metadata.version),
@@ -113,6 +120,39 @@ pub fn load(bytes: &[u8]) -> Result<(Hebb, Metadata), AgentError> {
         Hebb::from_parts(metadata.agent.clone(), weights?, a_bar?, g_bar?)?,
         metadata,
     ))
+}
+
+fn checksum<'a>(json: &str, data: impl IntoIterator<Item = &'a [u8]>) -> String {
+    let mut hash = Xxh3::new();
+    hash.update(json.as_bytes());
+    for bytes in data {
+        hash.update(bytes);
+    }
+    format!("{:016x}", hash.digest())
+}
+
+/// A JSON object with the checksum of itself and `data` as its first field.
+fn with_checksum(json: &str, data: &[Vec<u8>]) -> String {
+    let sum = checksum(json, data.iter().map(Vec::as_slice));
+    format!("{CHECKSUM}{sum}\",{}", &json[1..])
+}
+
+fn without_checksum(text: &str, tensors: &SafeTensors<'_>) -> Result<String, AgentError> {
+    let altered = || AgentError::File {
+        problem: "the file is altered: its checksum differs".to_owned(),
+    };
+    let rest = text.strip_prefix(CHECKSUM).ok_or_else(altered)?;
+    let (sum, fields) = rest.split_once("\",").ok_or_else(altered)?;
+    let json = format!("{{{fields}");
+    let mut data = Vec::new();
+    for name in TENSORS {
+        data.push(tensors.tensor(name).map_err(|e| file(&e))?.data());
+    }
+    if sum == checksum(&json, data) {
+        Ok(json)
+    } else {
+        Err(altered())
+    }
 }
 
 fn values(tensors: &SafeTensors<'_>, name: &str) -> Result<Vec<f32>, AgentError> {

@@ -11,7 +11,15 @@ use crate::errors;
 
 /// Rows of flat observations in a (n, 11) array.
 pub(crate) fn senses(array: &PyReadonlyArray2<'_, f32>) -> PyResult<Vec<[f32; SENSES]>> {
-    rows(array, "senses")
+    let senses = rows(array, "senses")?;
+    match senses.iter().flatten().find(|x| !x.is_finite()) {
+        Some(x) => Err(errors::env(EnvError::OutOfBounds {
+            option: "senses",
+            value: x.to_string(),
+            bound: "finite".to_owned(),
+        })),
+        None => Ok(senses),
+    }
 }
 
 /// Rows of N numbers in a (n, N) array.

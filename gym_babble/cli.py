@@ -1,0 +1,494 @@
+"""The command line `gym-babble`.
+
+Results go to stdout, progress and messages to stderr. Bad input ends with exit code 2, any other
+failure with 1, each with one line that says what is wrong.
+"""
+
+import json
+import shlex
+import sys
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import gymnasium
+import typer
+from rich.console import Console
+
+from gym_babble import figures, reproduce
+from gym_babble._core import __version__
+from gym_babble.agents import HebbBabbling
+from gym_babble.compare import CONTENDERS, Settings
+from gym_babble.compare import compare as run_comparison
+from gym_babble.doctor import EXTRAS, examine
+from gym_babble.errors import BabbleError, ConfigError, MissingExtraError
+from gym_babble.evaluation import evaluate as run_evaluation
+from gym_babble.film import record, save_film
+from gym_babble.loading import check_env_id, load_agent
+from gym_babble.registration import ENVIRONMENTS
+from gym_babble.report import write_report
+from gym_babble.scenarios import scenarios
+from gym_babble.tables import OUTCOMES, paper_tally, plain_table, rate_cells, share, tally
+
+__all__ = ["app", "main"]
+
+app = typer.Typer(
+    help="Reaching learned by motor babbling: environments, agents and the paper's experiments.",
+    add_completion=False,
+    rich_markup_mode=None,
+)
+reproduced = typer.Typer(help="Make the paper's table or one of its figures.")
+app.add_typer(reproduced, name="reproduce")
+
+# What typer's complaints about arguments derive from; its name has moved between versions.
+UsageError: Any = typer.BadParameter.__bases__[0]
+
+out = Console()
+messages = Console(stderr=True)
+
+AsJson = Annotated[bool, typer.Option("--json", help="One JSON document on stdout.")]
+BodyName = Annotated[str, typer.Option(help="paper, icub, or a TOML or JSON file.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed.")]
+Seeds = Annotated[int, typer.Option(min=1, help="How many seeds: 0, 1, ...")]
+Cases = Annotated[int, typer.Option(min=1, help="Cases of Table I, of each seed.")]
+Movements = Annotated[int, typer.Option(min=1, help="Legal movements to learn from.")]
+Variant = Annotated[Literal["paper", "conjunctive"], typer.Option(help="Variant of the agent.")]
+QuasiStatic = Annotated[
+    bool, typer.Option("--quasi-static", help="Babble without the muscles' lag: faster.")
+]
+EnvId = Annotated[
+    str | None,
+    typer.Option(help="Environment to act in; BabbleReachPattern-v0 if not given."),
+]
+OwnBody = Annotated[
+    str | None, typer.Option(help="paper, icub, or a file; the one it learnt on if not given.")
+]
+AgentName = Annotated[
+    str,
+    typer.Argument(
+        help="random, scripted, oracle, a file of `babble`, or a zip of stable-baselines3 (which "
+        "holds pickled Python: only those you trust)."
+    ),
+]
+
+
+@app.callback(invoke_without_command=True)
+def _top(
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", help="Show the version.")] = False,
+) -> None:
+    if version:
+        typer.echo(__version__)
+    elif context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+
+
+@app.command("list")
+def list_environments(as_json: AsJson = False) -> None:
+    """List the environments."""
+    if as_json:
+        _print_json([asdict(row) for row in ENVIRONMENTS])
+        return
+    table = plain_table(None, ["id", "obs", "control", "reward", "steps", "solved at"], left=4)
+    for row in ENVIRONMENTS:
+        steps = "1" if row.max_episode_steps is None else str(row.max_episode_steps)
+        table.add_row(row.id, row.obs, row.control, row.reward, steps, f"{row.reward_threshold:g}")
+    out.print(table)
+
+
+@app.command()
+def info(
+    env_id: Annotated[str, typer.Argument(metavar="ID", help="As `list` shows it.")],
+    body: BodyName = "paper",
+    as_json: AsJson = False,
+) -> None:
+    """Show an environment: senses, action, reward terms, limits."""
+    check_env_id(env_id)
+    row = next(row for row in ENVIRONMENTS if row.id == env_id)
+    env: Any = gymnasium.make(env_id, body=body)
+    spec = env.unwrapped.choices.spec
+    goals = list(spec.goals) if row.obs == "goal" else []
+    described = {
+        **asdict(row),
+        "observation_space": str(env.observation_space),
+        "action_space": str(env.action_space),
+        "senses": [asdict(entry) for entry in (*spec.senses, *goals)],
+        "action": asdict(spec.action),
+        "reward_terms": spec.reward_terms,
+        "outcomes": spec.outcomes,
+        "max_episode_steps": spec.max_episode_steps,
+        "control_hz": spec.control_hz,
+    }
+    if as_json:
+        _print_json(described)
+    else:
+        _show_info(described)
+
+
+def _show_info(described: dict[str, Any]) -> None:
+    out.print(f"[bold]{described['id']}[/]")
+    for name in ("obs", "control", "reward", "max_episode_steps", "control_hz", "reward_threshold"):
+        out.print(f"  {name:18} {described[name]}", highlight=False)
+    for name in ("reward_terms", "outcomes"):
+        out.print(f"  {name:18} {', '.join(described[name])}", highlight=False)
+    for title, entries in (("senses", described["senses"]), ("action", [described["action"]])):
+        table = plain_table(title, ["name", "parts", "low", "high", "unit", "meaning"], left=6)
+        for entry in entries:
+            low, high = ("\n".join(f"{x:.4g}" for x in entry[end]) for end in ("low", "high"))
+            labels = "\n".join(entry["labels"])
+            table.add_row(entry["name"], labels, low, high, entry["unit"], entry["description"])
+        out.print(table)
+
+
+@app.command()
+def babble(
+    *,
+    file: Annotated[Path, typer.Option("--out", help="File for the agent.")],
+    variant: Variant = "paper",
+    movements: Movements = 20_000,
+    seed: Seed = 0,
+    body: BodyName = "paper",
+    quasi_static: QuasiStatic = False,
+    as_json: AsJson = False,
+) -> None:
+    """Let an agent babble and learn, and save it."""
+    _check_folder_of(file)
+    agent = _learn(variant, movements, seed, body, quasi_static=quasi_static)
+    agent.save(file)
+    if as_json:
+        _print_json(
+            {
+                "file": str(file),
+                "variant": variant,
+                "body": body,
+                "seed": seed,
+                "quasi_static": quasi_static,
+                "movements": agent.movements,
+                "legal_movements": agent.legal_movements,
+                "legal_rate": agent.legal_rate,
+            }
+        )
+        return
+    out.print(
+        f"{agent.movements:,} movements, {agent.legal_movements:,} of them legal "
+        f"({share(agent.legal_rate)}): {file}",
+        highlight=False,
+    )
+
+
+@app.command()
+def evaluate(
+    agent: AgentName,
+    *,
+    cases: Cases = 1_000,
+    seed: Seed = 0,
+    split: Annotated[Literal["test", "validation"], typer.Option(help="Which cases.")] = "test",
+    env_id: EnvId = None,
+    body: OwnBody = None,
+    as_json: AsJson = False,
+) -> None:
+    """Test an agent on cases of Table I."""
+    loaded = load_agent(agent, env_id=env_id, body=body, seed=seed)
+    drawn = scenarios("table1", cases, seed, split=split, body=loaded.body)
+    result = run_evaluation(
+        loaded.agent,
+        loaded.env_id,
+        drawn,
+        body=loaded.body,
+        progress_bar=True,
+        **loaded.env_kwargs,
+    )
+    rates = tally(result)
+    if as_json:
+        _print_json(
+            {"agent": agent, "env_id": loaded.env_id, "seed": seed, "split": split, **rates}
+        )
+        return
+    table = _rates_table(f"{cases:,} cases of Table I, 95 % Wilson intervals")
+    table.add_row(agent, *rate_cells(rates))
+    table.add_row("the paper", *rate_cells(paper_tally()))
+    out.print(table)
+
+
+@app.command()
+def compare(
+    *,
+    report: Annotated[
+        Path | None, typer.Option(help="Folder for index.html and results.json.")
+    ] = None,
+    task: Annotated[Literal["reach"], typer.Option(help="Task.")] = "reach",
+    agents: Annotated[
+        str | None,
+        typer.Option(help=f"Some of {','.join(c.key for c in CONTENDERS)}; all if not given."),
+    ] = None,
+    seeds: Seeds = 1,
+    cases: Cases = 1_000,
+    movements: Movements = 20_000,
+    body: BodyName = "paper",
+    as_json: AsJson = False,
+) -> None:
+    """Compare Hebb babbling with PPO, and with agents that need no learning."""
+    if report is not None:
+        _check_folder_of(report)
+        figures.fig2()  # A missing extra shows now, not after minutes.
+    settings = Settings(body=body, seeds=seeds, cases=cases, movements=movements, progress_bar=True)
+    keys = None if agents is None else [key.strip() for key in agents.split(",")]
+    comparison = run_comparison(keys, settings, say=_say)
+    written: list[Path] = []
+    if report is not None:
+        _say("writing the report")
+        command = ["gym-babble", "compare", "--task", task, "--report", str(report)]
+        command += ["--agents", agents] if agents is not None else []
+        command += ["--seeds", str(seeds), "--cases", str(cases)]
+        command += ["--movements", str(movements), "--body", body]
+        written = write_report(comparison, report, shlex.join(command))
+    if as_json:
+        _print_json(comparison.to_json())
+    else:
+        out.print(comparison.table())
+    _say(f"{comparison.seconds:.0f} s")
+    _name_files(written)
+
+
+@app.command()
+def render(
+    agent: AgentName,
+    *,
+    folder: Annotated[Path, typer.Option("--out", help="Folder for the pictures.")],
+    kind: Annotated[
+        Literal["png", "gif", "mp4"], typer.Option("--format", help="Of the film.")
+    ] = "gif",
+    seed: Seed = 0,
+    camera: Annotated[Literal["third_person", "eye"], typer.Option(help="Camera.")] = (
+        "third_person"
+    ),
+    size: Annotated[int, typer.Option(min=16, max=4096, help="Edge of a picture [pixel].")] = 360,
+    env_id: EnvId = None,
+    body: OwnBody = None,
+) -> None:
+    """Film an episode of an agent: a contact sheet, and frames, GIF or MP4."""
+    _check_folder_of(folder)
+    loaded = load_agent(agent, env_id=env_id, body=body, seed=seed)
+    film = record(loaded, seed=seed, camera=camera, size=size)
+    _say(f"{film.outcome} after {len(film.frames) - 1} control steps")
+    _name_files(save_film(film, folder, kind))
+
+
+@app.command()
+def doctor(as_json: AsJson = False) -> None:
+    """Check what is installed, that the core computes what it should, and how fast it is."""
+    found = examine()
+    if as_json:
+        _print_json(found)
+    else:
+        _show_doctor(found)
+    if not found["same_bits"]:
+        raise typer.Exit(1)
+
+
+def _show_doctor(found: dict[str, Any]) -> None:
+    table = plain_table(None, ["what", "found"], left=2)
+    for name, version in found["versions"].items():
+        table.add_row(name, version or "[dim]not installed[/]")
+    for extra, there in found["extras"].items():
+        missing = f"no: pip install 'gym-babble\\[{extra}]' brings {', '.join(EXTRAS[extra])}"
+        table.add_row(f"extra {extra}", "yes" if there else missing)
+    table.add_row("platform", found["platform"])
+    table.add_row("build", found["build"])
+    table.add_row("threads", str(found["threads"]))
+    expected = found["state_hash_expected"]
+    table.add_row(
+        "state after 20 steps of seed 0",
+        f"{found['state_hash']}: as it should be"
+        if found["same_bits"]
+        else f"[red]{found['state_hash']}, expected {expected}: rebuild with `make setup`[/]",
+    )
+    table.add_row("a step through gymnasium.make", f"{found['step_us']:.1f} µs")
+    table.add_row("a step in a batch of 64", f"{found['step_in_batch_of_64_us']:.1f} µs")
+    out.print(table)
+
+
+@reproduced.command("table1")
+def reproduce_table1(
+    *,
+    seeds: Seeds = 5,
+    cases: Cases = 1_000,
+    body: BodyName = "paper",
+    variant: Variant = "paper",
+    control: Annotated[
+        Literal["pattern", "delta_posture"], typer.Option(help="Control in the tests.")
+    ] = "pattern",
+    quasi_static: QuasiStatic = False,
+    movements: Movements = 20_000,
+    folder: Annotated[Path, typer.Option("--out", help="Folder for table1.json and .csv.")] = (
+        Path()
+    ),
+    as_json: AsJson = False,
+) -> None:
+    """Table I: how reaching ends, beside the paper's rates."""
+    _check_folder_of(folder)
+    table = reproduce.table1(
+        seeds=seeds,
+        cases=cases,
+        body=body,
+        variant=variant,
+        control=control,
+        quasi_static=quasi_static,
+        movements=movements,
+        progress_bar=True,
+    )
+    document = table.to_json()
+    folder.mkdir(exist_ok=True)
+    files = [folder / "table1.json", folder / "table1.csv"]
+    files[0].write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
+    files[1].write_text(table.to_csv(), encoding="utf-8")
+    if as_json:
+        _print_json(document)
+    else:
+        _show_table1(document, f"Table I: Hebb {variant}, body {body}, {control} control")
+    _name_files(files)
+
+
+def _show_table1(document: dict[str, Any], title: str) -> None:
+    table = _rates_table(title, "legal")
+    table.add_row("the paper", *rate_cells(document["paper"]), "≈.20")
+    for seed in document["by_seed"]:
+        table.add_row(f"seed {seed['seed']}", *rate_cells(seed), share(seed["legal_rate"]))
+    pooled = document["pooled"]
+    table.add_row("[bold]pooled[/]", *rate_cells(pooled), share(pooled["legal_rate"]))
+    spreads = document["over_seeds"]
+    if spreads["success"]["low"] is not None:
+        cells = [
+            f"{share(spreads[name]['mean'])}\n"
+            f"[dim]{share(spreads[name]['low'])}–{share(spreads[name]['high'])}[/]"
+            for name in (*OUTCOMES, "legal_rate")
+        ]
+        table.add_row("over seeds\n[dim]t interval[/]", *cells)
+    out.print(table)
+
+
+@reproduced.command("fig2")
+def reproduce_fig2(
+    file: Annotated[Path, typer.Option("--out", help="Picture: png, svg or pdf.")] = Path(
+        "fig2.png"
+    ),
+) -> None:
+    """Figure 2: paths of the pattern generators."""
+    _check_folder_of(file)
+    figures.save(figures.fig2(), file)
+    _name_files([file])
+
+
+@reproduced.command("fig4")
+def reproduce_fig4(
+    file: Annotated[Path, typer.Option("--out", help="Picture: png, svg or pdf.")] = Path(
+        "fig4.png"
+    ),
+    variant: Variant = "paper",
+    movements: Movements = 20_000,
+    seed: Seed = 0,
+    body: BodyName = "paper",
+) -> None:
+    """Figure 4: trajectories to 4 targets from 36 starts around each."""
+    _check_picture(file)
+    agent = _learn(variant, movements, seed, body)
+    cases = scenarios("fig4", body=body)
+    found = reproduce.ways(agent, cases, body)
+    switched = reproduce.ways(agent, [reproduce.switched(case) for case in cases], body)
+    missing = reproduce.starts_without_case(body)
+    figures.save(figures.fig4(found, switched, missing), file)
+    for name, made in (("obstacle halfway", found), ("switched", switched)):
+        good = sum(way.outcome == "success" for way in made)
+        out.print(f"{name}: {good} of {len(made)} reach", highlight=False)
+    out.print(f"{len(missing)} starts have no case", highlight=False)
+    _name_files([file])
+
+
+@reproduced.command("fig5")
+def reproduce_fig5(
+    file: Annotated[Path, typer.Option("--out", help="Picture: png, svg or pdf.")] = Path(
+        "fig5.png"
+    ),
+    movements: Movements = 20_000,
+    seed: Seed = 0,
+    body: BodyName = "paper",
+) -> None:
+    """Figure 5: the two patterns of weights."""
+    _check_picture(file)
+    sets = reproduce.weight_sets(_learn("paper", movements, seed, body))
+    figures.save(figures.fig5(sets), file)
+    out.print(
+        f"{sets.left.sum()} input neurons curve left, {sets.right.sum()} right; the mean of one "
+        f"set correlates {share(sets.mirror_correlation)} with the mirrored mean of the other",
+        highlight=False,
+    )
+    _name_files([file])
+
+
+def _learn(
+    variant: str, movements: int, seed: int, body: str, *, quasi_static: bool = False
+) -> HebbBabbling:
+    env = gymnasium.make("BabbleReachPattern-v0", body=body)
+    agent = HebbBabbling(env, variant, seed=seed, quasi_static=quasi_static)
+    return agent.learn(movements, progress_bar=True)
+
+
+def _rates_table(title: str, *more: str) -> Any:
+    return plain_table(title, ["", "success", "collision", "joint limit", "timeout", *more])
+
+
+def _check_folder_of(path: Path) -> None:
+    if not path.absolute().parent.is_dir():
+        raise ConfigError(f"--out {path}: there is no folder {path.parent}; make it first")
+
+
+def _check_picture(path: Path) -> None:
+    """Finds what would fail after learning: a missing folder, extra or format."""
+    _check_folder_of(path)
+    figures.check_format(path)
+
+
+def _print_json(document: Any) -> None:
+    typer.echo(json.dumps(document, indent=2))
+
+
+def _say(text: str) -> None:
+    messages.print(text, highlight=False, markup=False)
+
+
+def _name_files(files: list[Path]) -> None:
+    for file in files[:3]:
+        _say(str(file))
+    if len(files) > 3:
+        _say(f"... and {len(files) - 3} more")
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Runs the command line and exits.
+
+    Args:
+        arguments: Words after `gym-babble`; the process's own if not given.
+    """
+    sys.exit(_run(arguments))
+
+
+def _run(arguments: Sequence[str] | None) -> int:
+    try:
+        return app(arguments, standalone_mode=False) or 0
+    except UsageError as error:
+        return _fail(f"{error.format_message()} (see gym-babble --help)", 2)
+    except MissingExtraError as error:
+        return _fail(str(error), 1)
+    except (BabbleError, FileNotFoundError) as error:
+        return _fail(str(error), 2)
+    except OSError as error:
+        return _fail(str(error), 1)
+    except (KeyboardInterrupt, typer.Abort):
+        return _fail("interrupted", 130)
+
+
+def _fail(text: str, code: int) -> int:
+    # One line, whatever line breaks a library's message has.
+    typer.echo(f"error: {' '.join(text.split())}", err=True)
+    return code

@@ -1,0 +1,370 @@
+"""The main job: Hebb babbling against PPO on reaching, beside agents that need no learning.
+
+Each agent learns in the environment it was made for; all of them are tested on the same cases of
+Table I. With several seeds, seed s has learners and 1,000 (`cases`) tests of its own.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import asdict, dataclass, field
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import gymnasium
+
+from gym_babble._core import __version__
+from gym_babble.agents import HebbBabbling, Oracle, RandomBabbling, Scripted
+from gym_babble.config import Config, config_json
+from gym_babble.errors import ConfigError, MissingExtraError
+from gym_babble.evaluation import Evaluation, evaluate
+from gym_babble.scenarios import scenarios
+from gym_babble.tables import paper_tally, plain_table, rate_cells, share, tally
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from rich.table import Table
+
+    from gym_babble.agents.movements import Agent
+    from gym_babble.config import BodyLike
+    from gym_babble.scenarios import Scenario
+
+__all__ = ["CONTENDERS", "Comparison", "Contender", "Settings", "Trained", "compare"]
+
+PATTERN = "BabbleReachPattern-v0"
+VALIDATION_CASES = 200
+# Legal movements after which a Hebb agent's curve has a point; multiples of 250, its learning step.
+MILESTONES = (250, 500, 1_000, 2_000, 5_000, 10_000, 20_000)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """What a comparison is made with."""
+
+    body: BodyLike = "paper"
+    """Body and task."""
+    seeds: int = 1
+    """Seeds 0, 1, ... of learning and tests."""
+    cases: int = 1_000
+    """Tests of each seed."""
+    movements: int = 20_000
+    """Legal movements that the Hebb agents learn from."""
+    ppo_steps: int | None = None
+    """Steps that PPO learns from; the preset's if None."""
+    progress_bar: bool = False
+    """Show bars with the time left."""
+
+
+class CurvePoint(NamedTuple):
+    """One point of a learning curve."""
+
+    control_steps: int
+    """Control steps simulated so far."""
+    seconds: float
+    """Clock time of learning, validation not counted [s]."""
+    success: float
+    """Share of 200 validation cases that succeeded."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trained:
+    """An agent, where it acts, and what learning took."""
+
+    agent: Agent
+    env_id: str = PATTERN
+    env_kwargs: dict[str, Any] = field(default_factory=dict)
+    movements: int = 0
+    """Movements babbled, or episodes ended while it learnt."""
+    legal_movements: int | None = None
+    """Of these the legal ones, which a Hebb agent learns from."""
+    control_steps: int = 0
+    """Control steps simulated; a movement counts with its whole length."""
+    seconds: float = 0.0
+    """Clock time of learning [s]."""
+    curve: tuple[CurvePoint, ...] = ()
+
+
+@dataclass(frozen=True)
+class Contender:
+    """One row of the comparison."""
+
+    key: str
+    """Name for `--agents`."""
+    title: str
+    detail: str
+    """What it decides on, or how."""
+    train: Callable[[Settings, int], Trained]
+    slow_test: bool = False
+    """Whether its test takes more than a moment."""
+
+
+@dataclass(frozen=True)
+class Result:
+    """A contender's agents and tests, one of each seed."""
+
+    contender: Contender
+    trained: tuple[Trained, ...]
+    tests: tuple[Evaluation, ...]
+
+    @property
+    def pooled(self) -> Evaluation:
+        """All tests together."""
+        return sum(self.tests, start=Evaluation((), (), ()))
+
+    @property
+    def legal_rate(self) -> float | None:
+        """Share of the babbled movements that were legal."""
+        legal = sum(trained.legal_movements or 0 for trained in self.trained)
+        return legal / sum(trained.movements for trained in self.trained) if legal else None
+
+    def mean(self, what: str) -> float:
+        """Mean over seeds of a number of `Trained`."""
+        return float(sum(getattr(trained, what) for trained in self.trained)) / len(self.trained)
+
+    def to_json(self) -> dict[str, Any]:
+        """What there is to know about it, in JSON's types."""
+        return {
+            "agent": self.contender.key,
+            "title": self.contender.title,
+            "detail": self.contender.detail,
+            "env_id": self.trained[0].env_id,
+            "legal_rate": self.legal_rate,
+            "test": tally(self.pooled),
+            "test_by_seed": [tally(test) for test in self.tests],
+            "training_by_seed": [
+                {
+                    "movements": trained.movements,
+                    "legal_movements": trained.legal_movements,
+                    "control_steps": trained.control_steps,
+                    "seconds": trained.seconds,
+                    "curve": [point._asdict() for point in trained.curve],
+                }
+                for trained in self.trained
+            ],
+        }
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What came out."""
+
+    settings: Settings
+    results: tuple[Result, ...]
+    skipped: dict[str, str]
+    """Contenders that could not take part, and why."""
+    seconds: float
+    """Clock time of it all [s]."""
+
+    def result(self, key: str) -> Result | None:
+        """The result of a contender, if it took part."""
+        return next((result for result in self.results if result.contender.key == key), None)
+
+    def to_json(self) -> dict[str, Any]:
+        """The whole as one document in JSON's types."""
+        settings = {k: v for k, v in asdict(self.settings).items() if k != "progress_bar"}
+        body = self.settings.body
+        return {
+            "task": "reach",
+            "protocol": "table1",
+            "version": __version__,
+            **settings,
+            "body": str(body) if isinstance(body, str | os.PathLike) else _config(body).profile,
+            "paper": {"legal_rate": 0.2, "test": paper_tally()},
+            "agents": [result.to_json() for result in self.results],
+            "skipped": [{"agent": key, "reason": why} for key, why in self.skipped.items()],
+            "seconds": self.seconds,
+        }
+
+    def table(self) -> Table:
+        """The table for the terminal, 80 characters wide."""
+        n = self.settings.cases * self.settings.seeds
+        heads = ["success", "collision", "joint\nlimit", "timeout"]
+        table = plain_table(
+            f"Reaching: {n:,} cases of Table I, 95 % Wilson intervals",
+            ["agent", *heads, "movements\n[dim]legal[/]", "steps\n[dim]10⁶[/]", "clock\n[dim]s[/]"],
+            padding=0,
+        )
+        paper = "[bold]the paper[/]\n[dim]Table I[/]"
+        table.add_row(paper, *rate_cells(paper_tally()), "20,000\n[dim]≈.20[/]")
+        for result in self.results:
+            table.add_row(*_row(result))
+        lines = [f"left out: {key}: {why}" for key, why in self.skipped.items()]
+        table.caption = "\n".join(lines).replace("[", "\\[") or None
+        return table
+
+
+def _row(result: Result) -> list[str]:
+    name = f"[bold]{result.contender.title}[/]\n[dim]{result.contender.detail}[/]"
+    cells = [name, *rate_cells(tally(result.pooled))]
+    if not result.mean("movements"):
+        return cells
+    movements = f"{result.mean('movements'):,.0f}"
+    if result.legal_rate is not None:
+        legal = f"{result.mean('legal_movements'):,.0f}"
+        movements = f"{legal}\n[dim]{share(result.legal_rate)}[/]"
+    steps = f"{result.mean('control_steps') / 1e6:.1f}"
+    return [*cells, movements, steps, f"{result.mean('seconds'):.0f}"]
+
+
+def compare(
+    agents: Sequence[str] | None = None,
+    settings: Settings | None = None,
+    *,
+    say: Callable[[str], None] = lambda _: None,
+) -> Comparison:
+    """Trains and tests the contenders one after the other.
+
+    Args:
+        agents: Keys of `CONTENDERS`; all if not given.
+        settings: What to compare with; the defaults if not given.
+        say: Told what comes next.
+
+    Raises:
+        ConfigError: A key or a number is not one there is.
+        ScenarioError: The body leaves no room for a case.
+    """
+    settings = settings or Settings()
+    contenders = _chosen(agents)
+    if settings.seeds < 1 or settings.movements < 1:
+        raise ConfigError("seeds and movements must be at least 1")
+    began = perf_counter()
+    threads = os.cpu_count() or 1
+    cases = [
+        scenarios("table1", settings.cases, seed, body=settings.body, threads=threads)
+        for seed in range(settings.seeds)
+    ]
+    results: list[Result] = []
+    skipped: dict[str, str] = {}
+    for i, contender in enumerate(contenders, start=1):
+        say(f"[{i}/{len(contenders)}] {contender.title}, {contender.detail}")
+        try:
+            results.append(_run(contender, settings, cases))
+        except MissingExtraError as error:
+            skipped[contender.key] = str(error)
+            say(f"left out: {error}")
+    return Comparison(settings, tuple(results), skipped, perf_counter() - began)
+
+
+def _chosen(keys: Sequence[str] | None) -> list[Contender]:
+    if keys is None:
+        return list(CONTENDERS)
+    known = {contender.key: contender for contender in CONTENDERS}
+    unknown = [key for key in keys if key not in known]
+    if unknown or not keys:
+        raise ConfigError(f"agents: {unknown} unknown; there are {', '.join(known)}")
+    return [known[key] for key in dict.fromkeys(keys)]
+
+
+def _run(contender: Contender, settings: Settings, cases: Sequence[Sequence[Scenario]]) -> Result:
+    trained = tuple(contender.train(settings, seed) for seed in range(settings.seeds))
+    tests = tuple(
+        evaluate(
+            one.agent,
+            one.env_id,
+            its_cases,
+            body=settings.body,
+            progress_bar=settings.progress_bar and contender.slow_test,
+            **one.env_kwargs,
+        )
+        for one, its_cases in zip(trained, cases, strict=True)
+    )
+    return Result(contender, trained, tests)
+
+
+def _config(body: BodyLike) -> Config:
+    return Config.from_json(config_json(body))
+
+
+class _Course:
+    """Keeps clock and learning curve of a Hebb agent while it babbles."""
+
+    def __init__(self, settings: Settings) -> None:
+        self._body = settings.body
+        self._cases = scenarios("table1", VALIDATION_CASES, split="validation", body=settings.body)
+        self._marks = {*MILESTONES, settings.movements}
+        self._steps = _config(settings.body).movement_steps
+        self._began = perf_counter()
+        self.seconds = 0.0
+        self.curve: list[CurvePoint] = []
+
+    def __call__(self, agent: HebbBabbling) -> None:
+        self.seconds += perf_counter() - self._began
+        if agent.legal_movements in self._marks:
+            success = evaluate(agent, PATTERN, self._cases, body=self._body).rate("success")
+            self.curve.append(CurvePoint(agent.movements * self._steps, self.seconds, success))
+        self._began = perf_counter()
+
+
+def _hebb(variant: str) -> Callable[[Settings, int], Trained]:
+    def train(settings: Settings, seed: int) -> Trained:
+        env = gymnasium.make(PATTERN, body=settings.body)
+        agent = HebbBabbling(env, variant, seed=seed)
+        course = _Course(settings)
+        agent.learn(settings.movements, progress_bar=settings.progress_bar, callback=course)
+        return Trained(
+            agent=agent,
+            movements=agent.movements,
+            legal_movements=agent.legal_movements,
+            control_steps=agent.movements * _config(settings.body).movement_steps,
+            seconds=course.seconds,
+            curve=tuple(course.curve),
+        )
+
+    return train
+
+
+def _ppo(preset: str) -> Callable[[Settings, int], Trained]:
+    def train(settings: Settings, seed: int) -> Trained:
+        from gym_babble.ppo import train_ppo  # noqa: PLC0415 - it loads PyTorch
+
+        ppo = train_ppo(
+            preset,
+            body=settings.body,
+            seed=seed,
+            steps=settings.ppo_steps,
+            validation_cases=VALIDATION_CASES,
+            progress_bar=settings.progress_bar,
+        )
+        steps = ppo.control_steps // ppo.agent.num_timesteps
+        return Trained(
+            agent=ppo.agent,
+            env_id=ppo.env_id,
+            env_kwargs=ppo.env_kwargs,
+            movements=ppo.movements,
+            control_steps=ppo.control_steps,
+            seconds=ppo.seconds,
+            curve=tuple(CurvePoint(p.steps * steps, p.seconds, p.success) for p in ppo.curve),
+        )
+
+    return train
+
+
+def _random(settings: Settings, seed: int) -> Trained:
+    return Trained(agent=RandomBabbling(gymnasium.make(PATTERN, body=settings.body), seed=seed))
+
+
+def _scripted(settings: Settings, seed: int) -> Trained:
+    del seed
+    return Trained(agent=Scripted(gymnasium.make(PATTERN, body=settings.body)))
+
+
+def _oracle(settings: Settings, seed: int) -> Trained:
+    del seed
+    env = gymnasium.make(PATTERN, body=settings.body)
+    return Trained(agent=Oracle(env, threads=os.cpu_count() or 1))
+
+
+CONTENDERS = (
+    Contender("hebb-paper", "Hebb paper", "obstacle only", _hebb("paper")),
+    Contender("hebb-conjunctive", "Hebb conjunctive", "obstacle × eye", _hebb("conjunctive")),
+    Contender("ppo-obstacle", "PPO pattern", "obstacle only", _ppo("pattern_obstacle")),
+    Contender("ppo-pattern", "PPO pattern", "all senses", _ppo("pattern")),
+    Contender(
+        "ppo-posture", "PPO delta_posture", "all senses", _ppo("delta_posture"), slow_test=True
+    ),
+    Contender("random", "Random", "babbles on", _random),
+    Contender("scripted", "Scripted", "to the shoulder", _scripted),
+    Contender("oracle", "Oracle", "tries 99", _oracle, slow_test=True),
+)
+"""The rows, in their order."""

@@ -1,0 +1,122 @@
+"""Agents from the command line: by name, or from a file."""
+
+from __future__ import annotations
+
+import json
+import os
+import zipfile
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import gymnasium
+
+from gym_babble.agents import HebbBabbling, Oracle, RandomBabbling, Scripted
+from gym_babble.errors import AgentFileError, ConfigError, MissingExtraError
+from gym_babble.registration import ENVIRONMENTS
+
+if TYPE_CHECKING:
+    from gym_babble.agents.movements import Agent
+    from gym_babble.config import BodyLike
+
+__all__ = ["REFERENCES", "LoadedAgent", "check_env_id", "load_agent"]
+
+REFERENCES = ("random", "scripted", "oracle")
+PATTERN = "BabbleReachPattern-v0"
+SB3_OBSERVATIONS = ("senses", "flat", "goal")
+
+
+@dataclass(frozen=True)
+class LoadedAgent:
+    """An agent and where it acts."""
+
+    agent: Agent
+    env_id: str
+    body: BodyLike
+    env_kwargs: dict[str, Any] = field(default_factory=dict)
+
+
+def load_agent(
+    name: str, *, env_id: str | None = None, body: BodyLike | None = None, seed: int = 0
+) -> LoadedAgent:
+    """An agent by name, or from a file.
+
+    Args:
+        name: "random", "scripted", "oracle", a file that `HebbBabbling.save` wrote, or a zip that
+            stable-baselines3 wrote. The latter holds pickled Python: load only those you trust.
+        env_id: Environment to act in; BabbleReachPattern-v0 if not given, but a zip needs one.
+        body: Body and task; the one it learnt on, or "paper", if not given.
+        seed: Seed of the random agent.
+
+    Raises:
+        FileNotFoundError: There is neither such a name nor such a file.
+        AgentFileError: The file is not an agent.
+        ConfigError: There is no such environment or body, or the agent cannot act in it.
+    """
+    if env_id is not None:
+        check_env_id(env_id)
+    if name in REFERENCES:
+        return _reference(name, env_id or PATTERN, "paper" if body is None else body, seed)
+    path = Path(name)
+    if not path.is_file():
+        raise FileNotFoundError(f"{name}: no such file; agents by name are {', '.join(REFERENCES)}")
+    if zipfile.is_zipfile(path):
+        return _stable_baselines(path, env_id, "paper" if body is None else body)
+    return _hebb(path, env_id or PATTERN, body)
+
+
+def check_env_id(env_id: str) -> None:
+    """Raises ConfigError if there is no such environment."""
+    known = [row.id for row in ENVIRONMENTS]
+    if env_id not in known:
+        raise ConfigError(f"{env_id!r} is not an environment; there are {', '.join(known)}")
+
+
+def _reference(name: str, env_id: str, body: BodyLike, seed: int) -> LoadedAgent:
+    env = gymnasium.make(env_id, body=body)
+    if name == "random":
+        return LoadedAgent(RandomBabbling(env, seed=seed), env_id, body)
+    if name == "scripted":
+        return LoadedAgent(Scripted(env), env_id, body)
+    return LoadedAgent(Oracle(env, threads=os.cpu_count() or 1), env_id, body)
+
+
+def _hebb(path: Path, env_id: str, body: BodyLike | None) -> LoadedAgent:
+    agent = HebbBabbling.load(path)
+    if body is None:
+        body = json.loads(agent.choices.task.config())
+    return LoadedAgent(HebbBabbling.load(path, gymnasium.make(env_id, body=body)), env_id, body)
+
+
+def _stable_baselines(path: Path, env_id: str | None, body: BodyLike) -> LoadedAgent:
+    if env_id is None:
+        raise ConfigError(f"{path}: name the environment it learnt in with --env-id")
+    try:
+        import stable_baselines3
+    except ImportError as error:
+        raise MissingExtraError("stable-baselines3", "sb3") from error
+    algorithm = getattr(stable_baselines3, _algorithm(path))
+    try:
+        model = algorithm.load(path, device="cpu")
+    except Exception as error:  # Unpickling can raise anything.
+        raise AgentFileError(f"{path}: {error}") from error
+    for obs in SB3_OBSERVATIONS:
+        env = gymnasium.make(env_id, obs=obs, body=body)
+        if env.observation_space == model.observation_space:
+            return LoadedAgent(model, env_id, body, {"obs": obs})
+    raise ConfigError(f"{path}: it has learnt from other observations than {env_id} gives")
+
+
+def _algorithm(path: Path) -> str:
+    """Which of stable-baselines3's algorithms for continuous actions wrote a zip."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            data = json.loads(archive.read("data"))
+        module = data["policy_class"]["__module__"]
+    except (KeyError, TypeError, ValueError, zipfile.BadZipFile) as error:
+        raise AgentFileError(f"{path}: not a model of stable-baselines3") from error
+    if module.startswith("stable_baselines3.sac."):
+        return "SAC"
+    if module.startswith("stable_baselines3.td3."):
+        return "TD3"
+    return "PPO" if "n_epochs" in data else "A2C"

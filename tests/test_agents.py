@@ -9,7 +9,7 @@ import gymnasium
 import numpy as np
 import pytest
 from comparing import assert_same
-from safetensors.numpy import load_file
+from safetensors.numpy import load_file, save_file
 
 from gym_babble import HebbBabbling, Oracle, RandomBabbling, Scripted, evaluate, scenarios
 from gym_babble.envs import BabbleReachEnv, BabbleReachVectorEnv
@@ -181,8 +181,6 @@ def test_broken_files_are_refused(learnt, tmp_path):
 
 
 def test_a_foreign_safetensors_file_is_refused(tmp_path):
-    from safetensors.numpy import save_file
-
     path = tmp_path / "foreign.safetensors"
     save_file({"weights": np.zeros((3, 3), np.float32)}, path)
     with pytest.raises(AgentFileError):

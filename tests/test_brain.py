@@ -12,7 +12,7 @@ from gym_babble import _core
 from gym_babble.errors import ConfigError
 
 
-def learn(w, g_bar, a_bar, g, a, eta, w_max, xi):
+def learn(w, g_bar, a_bar, g, a, *, eta, w_max, xi):
     """Eq. 7; xi is the share of the old value in the averages, which move on afterwards."""
     w += (eta * (a - a_bar))[:, None] * (g - g_bar)[None, :] * (w_max - abs(w))
     g_bar[:] = xi * g_bar + (1 - xi) * g
@@ -22,14 +22,14 @@ def learn(w, g_bar, a_bar, g, a, eta, w_max, xi):
 @pytest.mark.parametrize("eta", [0.25, 1.0])
 def test_the_rule_is_five_lines_of_numpy(eta):
     random = np.random.default_rng(0)
-    n_in, n_out, w_max, xi = 30, 20, 0.2, 0.2
+    n_in, n_out, w_max, xi = 30, 20, np.float32(0.2), np.float32(0.2)
     rule = _core.Association(n_in, n_out, eta, w_max, xi)
     w = np.zeros((n_out, n_in), np.float32)
     g_bar, a_bar = np.zeros(n_in, np.float32), np.zeros(n_out, np.float32)
     for _ in range(200):
         g = random.random(n_in).astype(np.float32)
         a = random.random(n_out).astype(np.float32)
-        learn(w, g_bar, a_bar, g, a, *map(np.float32, (eta, w_max, xi)))
+        learn(w, g_bar, a_bar, g, a, eta=np.float32(eta), w_max=w_max, xi=xi)
         rule.learn(g, a)
         assert np.abs(rule.weights - w).max() < 1e-6
     assert np.abs(w).max() > 0.05

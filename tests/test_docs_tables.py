@@ -138,7 +138,7 @@ def test_the_keywords_and_their_defaults_are_those_of_the_batch():
         name: p.default for name, p in single.items()
     }
     documented = re.findall(
-        r"^    (\w+): ", inspect.cleandoc(BabbleReachEnv.__init__.__doc__), re.M
+        r"^    (\w+): ", inspect.cleandoc(BabbleReachEnv.__init__.__doc__), re.MULTILINE
     )
     assert set(documented) - {"ConfigError"} == set(single) - {"self"}
 

@@ -36,7 +36,7 @@ def posture_at(env, point):
     return 2 * observation["arm"] - 1
 
 
-def play(env, action, options, **choices):
+def play(env, action, options):
     """The last step of an episode of one action."""
     env.reset(seed=0, options=options)
     while True:
@@ -234,7 +234,7 @@ def test_max_episode_steps_of_make_is_a_wrappers_and_of_the_environment_its_own(
     env = gymnasium.make("BabbleReach-v0", max_episode_steps=10)
     assert isinstance(env, TimeLimit)
     env.reset(seed=1)
-    for k in range(1, 11):
+    for _ in range(10):
         observation, _, terminated, truncated, info = env.step(HOLD)
     assert (terminated, truncated) == (False, True)
     assert info["outcome"] == "running"

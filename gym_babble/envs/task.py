@@ -41,10 +41,10 @@ class ReachChoices:
             raise ConfigError(f"render_mode = {render_mode!r} is not one of {RENDER_MODES}")
         if camera not in CAMERAS:
             raise ConfigError(f"camera = {camera!r} is not one of {CAMERAS}")
-        _check_whole("width", width, 16, 4096, "pixels")
-        _check_whole("height", height, 16, 4096, "pixels")
-        _check_whole("retina_size", retina_size, 36, 2048, "pixels")
-        _check_whole("max_episode_steps", max_episode_steps, 1, 1_000_000, "control steps")
+        check_whole("width", width, 16, 4096, "pixels")
+        check_whole("height", height, 16, 4096, "pixels")
+        check_whole("retina_size", retina_size, 36, 2048, "pixels")
+        check_whole("max_episode_steps", max_episode_steps, 1, 1_000_000, "control steps")
         self.task = _core.Task(
             config_json(body),
             control=control,
@@ -119,7 +119,8 @@ class ReachChoices:
         return low, high
 
 
-def _check_whole(name: str, value: Any, low: int, high: int, unit: str) -> None:
+def check_whole(name: str, value: Any, low: int, high: int, unit: str) -> None:
+    """Raises `ConfigError` unless a value is a whole number within its bounds."""
     whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
     if not whole or not low <= value <= high:
         raise ConfigError(f"{name} = {value!r} is not a whole number in [{low}, {high}] {unit}")

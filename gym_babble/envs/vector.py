@@ -13,7 +13,7 @@ from gymnasium.vector.utils import batch_space
 
 from gym_babble import _core
 from gym_babble.envs.one import OneEnv
-from gym_babble.envs.task import RENDER_MODES, ReachChoices
+from gym_babble.envs.task import RENDER_MODES, ReachChoices, check_whole
 from gym_babble.errors import ConfigError
 from gym_babble.scenarios import Request, read_options
 from gym_babble.spaces import as_actions
@@ -95,10 +95,12 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
             "height": height,
             "retina_size": retina_size,
         }
+        check_whole("num_envs", num_envs, 1, 1_000_000, "environments")
         self.num_envs = num_envs
         self.render_mode = render_mode
         self._autoreset = _autoreset_mode(autoreset_mode)
         self._threads = threads if threads is not None else default_threads(num_envs)
+        check_whole("threads", self._threads, 1, 1024, "threads")
         self._make_core()
         choices = self._choices
         self.single_observation_space = choices.observation_space
@@ -214,9 +216,13 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
             seeds = list(seed)
         if len(seeds) != n:
             raise ConfigError(f"seed has {len(seeds)} values, expected {n}")
-        for i, value in enumerate(seeds):
-            if mask[i] and (value is not None or not self._seeded):
-                self._batch.seed(i, int(np_random(value)[0].integers(2**63)))
+        streams = [
+            (i, int(np_random(value)[0].integers(2**63)))
+            for i, value in enumerate(seeds)
+            if not self._seeded or (mask[i] and value is not None)
+        ]
+        for i, stream in streams:
+            self._batch.seed(i, stream)
         self._seeded = True
 
     def _requests(self, options: Any) -> list[Request]:

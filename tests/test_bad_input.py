@@ -1,0 +1,320 @@
+"""What is refused, by which name, and that everything goes on afterwards."""
+
+from __future__ import annotations
+
+import gymnasium
+import numpy as np
+import pytest
+from comparing import CONTROLS, assert_same
+from gymnasium.error import ResetNeeded
+
+from gym_babble import scenarios
+from gym_babble.envs import BabbleReachEnv, BabbleReachVectorEnv
+from gym_babble.errors import (
+    ActionError,
+    BabbleError,
+    ConfigError,
+    MissingExtraError,
+    ScenarioError,
+    SnapshotError,
+)
+
+NAN, INF = float("nan"), float("inf")
+ACTIONS = {
+    "nan": [NAN, 0],
+    "second is nan": np.array([0, NAN], np.float32),
+    "infinite": [INF, 0],
+    "minus infinite": np.array([-INF, 0], np.float64),
+    "scalar": 0.5,
+    "one": [0.5],
+    "three": [0.1, 0.2, 0.3],
+    "empty": [],
+    "row": np.zeros((1, 2), np.float32),
+    "column": np.zeros((2, 1)),
+    "ragged": [[1, 2], [3]],
+    "none": None,
+    "nones": [None, None],
+    "text": "up",
+    "texts": ["1", "2"],
+    "complex": np.zeros(2, complex),
+    "booleans": np.zeros(2, bool),
+    "objects": np.array([0.0, 1.0], object),
+    "too big for any float": [10**400, 0],
+    "dict": {"shoulder": 1, "elbow": 0},
+    "set": {0, 1},
+    "times": np.zeros(2, "datetime64[s]"),
+}
+each_action = pytest.mark.parametrize("action", ACTIONS.values(), ids=ACTIONS.keys())
+
+
+@each_action
+@pytest.mark.parametrize("control", ["delta_posture", "pattern"])
+def test_a_bad_action_is_refused_and_nothing_is_stepped(action, control):
+    env = BabbleReachEnv(control=control)
+    env.reset(seed=0)
+    before = env.state_hash()
+    with pytest.raises(ActionError, match="action") as caught:
+        env.step(action)
+    assert isinstance(caught.value, ValueError)
+    assert isinstance(caught.value, BabbleError)
+    assert env.state_hash() == before
+    assert env.step([0.1, 0.1])[0] in env.observation_space
+
+
+@each_action
+def test_a_bad_action_among_many_steps_none_of_them(action):
+    envs = BabbleReachVectorEnv(3, threads=2)
+    envs.reset(seed=0)
+    before = envs.call("state_hash")
+    for actions in ([[0, 0], action, [0, 0]], action):
+        if actions is not action and isinstance(action, np.ndarray) and action.dtype.kind == "b":
+            continue  # Among numbers NumPy makes numbers of them.
+        with pytest.raises(ActionError):
+            envs.step(actions)
+    assert envs.call("state_hash") == before
+    envs.step(np.zeros((3, 2)))
+
+
+def test_kinds_of_actions_that_are_taken():
+    expected = None
+    for action in (
+        np.array([1, -1], np.float32),
+        np.array([1, -1], np.float64),
+        np.array([1, -1], np.float16),
+        np.array([1, -1], np.int64),
+        np.array([1, -1], np.int8),
+        np.array([1, -1], ">f4"),
+        np.array([1, 9, -1, 9], np.float32)[::2],
+        [1, -1],
+        (1.0, np.float32(-1)),
+        [7, -1e300],  # Clipped.
+        np.array([3e38, -3.4e38]),
+        [2**100 * 1.0, -(2.0**200)],
+    ):
+        env = BabbleReachEnv()
+        env.reset(seed=0)
+        seen = env.step(action)
+        expected = expected or seen
+        assert_same(seen, expected)
+
+
+def test_a_step_outside_of_an_episode_needs_a_reset():
+    for env in (BabbleReachEnv(), BabbleReachEnv(control="pattern")):
+        with pytest.raises(ResetNeeded):
+            env.step([0, 0])
+    env.reset(seed=0)
+    env.step([0, 0])
+    before = env.state_hash()
+    with pytest.raises(ResetNeeded):
+        env.step([0, 0])
+    assert env.state_hash() == before
+    env.reset()
+    env.step([0, 0])
+
+
+def test_a_batch_needs_resets_too():
+    envs = BabbleReachVectorEnv(2, control="pattern", autoreset_mode="Disabled")
+    action = np.zeros((2, 2), np.float32)
+    with pytest.raises(ResetNeeded):
+        envs.step(action)
+    envs.reset(seed=0, options={"reset_mask": np.array([True, False])})
+    with pytest.raises(ResetNeeded, match="1"):
+        envs.step(action)
+    envs.reset(options={"reset_mask": np.array([False, True])})
+    envs.step(action)
+    before = envs.call("state_hash")
+    with pytest.raises(ResetNeeded):
+        envs.step(action)
+    assert envs.call("state_hash") == before
+
+
+REACH = {"start": (0.1, 0.2), "target": (0.2, 0.25), "obstacle": None}
+OPTIONS = [
+    ({"speed": 1}, ConfigError, "speed"),
+    ({"Start": (0, 0)}, ConfigError, "Start"),
+    ({1: 2, "a": 3}, ConfigError, "1"),
+    ("table1", ConfigError, "options"),
+    ([1, 2], ConfigError, "options"),
+    ({"scenario": "table1"}, ScenarioError, "scenario"),
+    ({"scenario": 4}, ScenarioError, "scenario"),
+    ({"scenario": {**REACH, "speed": 2}}, ConfigError, "speed"),
+    ({"start": 3}, ScenarioError, "start"),
+    ({"start": (1, 2, 3)}, ScenarioError, "start"),
+    ({"start": "ab"}, ScenarioError, "start"),
+    ({"start": (NAN, 0)}, ScenarioError, "start"),
+    ({"target": (INF, 0.1)}, ScenarioError, "target"),
+    ({"target": (9, 9)}, ScenarioError, "target.*reach"),
+    ({"target": (0.0, -0.38)}, ScenarioError, "target.*joint ranges"),
+    ({"start": (0.0, 0.0)}, ScenarioError, "start"),
+    ({"obstacle": (0.1,)}, ScenarioError, "obstacle"),
+    ({"obstacle": "none"}, ScenarioError, "obstacle"),
+    ({"obstacle": (0.1, NAN)}, ScenarioError, "obstacle"),
+    ({"obstacle": (0.1, 0.2, -1)}, ScenarioError, "obstacle"),
+    ({"obstacle": (0, 0, 1)}, ScenarioError, "no legal movement"),
+    ({**REACH, "obstacle": (0.1, 0.2)}, ScenarioError, "obstacle.*start"),
+    ({"start": (0.1, 0.2), "obstacle": (0.1, 0.2)}, ScenarioError, "obstacle.*start"),
+]
+
+
+@pytest.mark.parametrize(("options", "error", "named"), OPTIONS, ids=lambda x: str(x)[:40])
+def test_bad_options_are_refused_and_forgotten(options, error, named):
+    env = BabbleReachEnv()
+    env.reset(seed=0, options=REACH)
+    before = env.state_hash()
+    with pytest.raises(error, match=named) as caught:
+        env.reset(options=options)
+    assert isinstance(caught.value, ValueError)
+    assert env.state_hash() == before
+    env.step([0, 0])
+    env.reset()
+    assert env.scenario == REACH
+
+
+@pytest.mark.parametrize(("options", "error", "named"), OPTIONS, ids=lambda x: str(x)[:40])
+def test_bad_options_for_one_of_many_leave_all_as_they_were(options, error, named):
+    envs = BabbleReachVectorEnv(3, threads=2)
+    envs.reset(seed=0, options=REACH)
+    before = envs.call("state_hash")
+    with pytest.raises(error, match=named):
+        envs.reset(options=options)
+    if isinstance(options, dict) and "scenario" not in options and "speed" not in options:
+        with pytest.raises(error, match=named):
+            envs.reset(options={"scenario": [REACH, options, REACH]})
+    assert envs.call("state_hash") == before
+    envs.step(np.zeros((3, 2)))
+    envs.reset()
+    assert envs.get_attr("scenario") == (REACH,) * 3
+
+
+def test_lists_of_a_wrong_length_and_masks_of_a_wrong_kind():
+    envs = BabbleReachVectorEnv(3)
+    envs.reset(seed=0)
+    before = envs.call("state_hash")
+    cases = scenarios("table1", 2)
+    for arguments, named in (
+        ({"options": {"scenario": cases}}, "scenario"),
+        ({"options": {"scenario": []}}, "scenario"),
+        ({"seed": [1, 2]}, "seed"),
+        ({"options": {"reset_mask": np.array([True, False])}}, "reset_mask"),
+        ({"options": {"reset_mask": np.zeros(3, bool)}}, "reset_mask"),
+        ({"options": {"reset_mask": np.ones(3)}}, "reset_mask"),
+        ({"options": {"reset_mask": None}}, "reset_mask"),
+    ):
+        with pytest.raises(ConfigError, match=named):
+            envs.reset(**arguments)
+    for seed in (-1, [1, -2, 3]):
+        with pytest.raises(gymnasium.error.Error):
+            envs.reset(seed=seed)
+    with pytest.raises(gymnasium.error.Error):
+        BabbleReachEnv().reset(seed=-1)
+    with pytest.raises(ConfigError, match="states"):
+        envs.set_state(envs.get_state()[:2])
+    assert envs.call("state_hash") == before
+
+
+ARGUMENTS = [
+    ({"obs": "pixels"}, "pixels"),
+    ({"obs": None}, "obs"),
+    ({"control": "wish"}, "wish"),
+    ({"control": "Pattern"}, "Pattern"),
+    ({"reward": "dense"}, "dense"),
+    ({"obs": "goal", "reward": "progress"}, "reward"),
+    ({"obs": "goal", "reward": "sparse", "settled": True}, "settled"),
+    ({"render_mode": "ansi"}, "ansi"),
+    ({"camera": "left"}, "left"),
+    ({"width": 3}, "width"),
+    ({"height": 100_000}, "height"),
+    ({"width": 64.5}, "width"),
+    ({"width": "wide"}, "width"),
+    ({"max_episode_steps": 0}, "max_episode_steps"),
+    ({"max_episode_steps": 2**40}, "max_episode_steps"),
+    ({"max_episode_steps": 1.5}, "max_episode_steps"),
+    ({"max_episode_steps": True}, "max_episode_steps"),
+    ({"max_episode_steps": None}, "max_episode_steps"),
+    ({"obs": "retina", "retina_size": 8}, "retina_size"),
+    ({"obs": "retina", "retina_size": "big"}, "retina_size"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "named"), ARGUMENTS, ids=str)
+@pytest.mark.parametrize("kind", [BabbleReachEnv, BabbleReachVectorEnv])
+def test_arguments_that_are_not_ones_there_are(kind, arguments, named):
+    with pytest.raises(ConfigError, match=named):
+        kind(**arguments)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        ({"num_envs": 0}, "num_envs"),
+        ({"num_envs": -2}, "num_envs"),
+        ({"num_envs": 10**7}, "num_envs"),
+        ({"num_envs": 2.5}, "num_envs"),
+        ({"threads": 0}, "threads"),
+        ({"threads": 10**6}, "threads"),
+        ({"autoreset_mode": "Never"}, "autoreset_mode"),
+        ({"autoreset_mode": None}, "autoreset_mode"),
+        ({"render_mode": "human"}, "human"),
+    ],
+    ids=str,
+)
+def test_arguments_of_the_batch_that_are_not_ones_there_are(arguments, named):
+    with pytest.raises(ConfigError, match=named):
+        BabbleReachVectorEnv(**arguments)
+
+
+@pytest.mark.parametrize("control", CONTROLS)
+def test_broken_and_foreign_states_are_refused(control):
+    env = BabbleReachEnv(control=control)
+    env.reset(seed=0)
+    before, good = env.state_hash(), env.get_state()
+    foreign = BabbleReachEnv(control=control, body="icub")
+    foreign.reset(seed=0)
+    broken = [b"", b"state", good[:4], good[: len(good) // 2], good[:-1], good + b"\0"]
+    broken += [foreign.get_state(), BabbleReachEnv(control=control, reward="sparse").get_state()]
+    for at in range(len(good)):
+        altered = bytearray(good)
+        altered[at] ^= 1 << (at % 8)
+        broken.append(bytes(altered))
+    for state in broken:
+        with pytest.raises(SnapshotError) as caught:
+            env.set_state(state)
+        assert isinstance(caught.value, ValueError)
+    for state in (None, 3, "state"):
+        with pytest.raises((SnapshotError, TypeError)):
+            env.set_state(state)
+    assert env.state_hash() == before
+    env.step([0, 0])
+
+
+def test_one_broken_state_among_many_leaves_all_as_they_were():
+    envs = BabbleReachVectorEnv(3)
+    envs.reset(seed=0)
+    other = BabbleReachVectorEnv(3)
+    other.reset(seed=1)
+    before = envs.call("state_hash")
+    for bad in (b"", None):
+        with pytest.raises((SnapshotError, TypeError)):
+            envs.set_state([other.get_state()[0], other.get_state()[1], bad])
+        assert envs.call("state_hash") == before
+
+
+def test_goals_of_a_wrong_shape_are_refused():
+    env = BabbleReachEnv(obs="goal", reward="sparse")
+    for achieved, desired in (
+        (np.zeros(3), np.zeros(3)),
+        (np.zeros((4, 2)), np.zeros((3, 2))),
+        (0.0, 0.0),
+        ("here", "there"),
+        (None, None),
+    ):
+        with pytest.raises(ConfigError, match="goal"):
+            env.compute_reward(achieved, desired, {})
+
+
+def test_a_missing_extra_is_named(monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "pygame", None)
+    env = BabbleReachEnv(render_mode="human")
+    with pytest.raises(MissingExtraError, match=r"gym-babble\[human\]") as caught:
+        env.reset(seed=0)
+    assert isinstance(caught.value, ImportError)

@@ -165,6 +165,8 @@ impl Config {
         within("reach.success_radius_m", reach.success_radius_m, 1e-4, near)?;
         within("reach.b_range[0]", reach.b_range[0], 0.01, 0.99)?;
         within("reach.b_range[1]", reach.b_range[1], reach.b_range[0], 0.99)?;
+        // Before the movement time, which is bounded by it.
+        within("reach.control_period_s", reach.control_period_s, 1e-3, 1.0)?;
         within(
             "reach.movement_s",
             reach.movement_s,
@@ -189,7 +191,6 @@ impl Config {
             1e-6,
             100.0,
         )?;
-        within("reach.control_period_s", reach.control_period_s, 1e-3, 1.0)?;
         within(
             "reach.physics_steps",
             f64::from(reach.physics_steps),

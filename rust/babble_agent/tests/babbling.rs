@@ -1,0 +1,210 @@
+//! Babbling and learning: what they depend on, and that they learn.
+
+use babble_agent::{AgentError, Babbling, Experience, Hebb, HebbConfig, Variant};
+use babble_env::movement::{Fidelity, MovementPath};
+use babble_env::{
+    Config, Control, Options, Outcome, Pool, Purpose, ReachCase, ReachTask, protocol,
+};
+
+fn task() -> ReachTask {
+    let options = Options {
+        control: Control::Pattern,
+        ..Options::default()
+    };
+    ReachTask::new(Config::profile("paper").unwrap(), options).unwrap()
+}
+
+fn pool(threads: usize) -> Pool {
+    Pool::new(threads).unwrap()
+}
+
+fn babble(fidelity: Fidelity, portions: &[usize], threads: usize) -> (Vec<Experience>, u64) {
+    let (task, mut pool) = (task(), pool(threads));
+    let mut babbling = Babbling::new(4, fidelity);
+    let mut all = Vec::new();
+    for &n in portions {
+        let found = babbling.experience(&task, n, &mut pool).unwrap();
+        assert_eq!(found.len(), n);
+        all.extend(found);
+        assert_eq!(babbling.legal(), all.len() as u64);
+    }
+    (all, babbling.movements())
+}
+
+/// The k-th legal movement depends on the seed alone: any number of threads, any portions give the
+/// same experiences from the same number of movements. Catches movements of a chunk thrown away at
+/// the end of a portion, and a stream shared between threads.
+#[test]
+fn babbling_is_one_sequence() {
+    for fidelity in [Fidelity::Full, Fidelity::QuasiStatic] {
+        let whole = babble(fidelity, &[150], 1);
+        for (portions, threads) in [(&[150][..], 2), (&[150][..], 8), (&[1, 99, 7, 43][..], 2)] {
+            assert_eq!(babble(fidelity, portions, threads), whole);
+        }
+    }
+}
+
+/// A sequence taken up again where it stopped goes on as if it had not. Catches the last movement
+/// babbled twice.
+#[test]
+fn babbling_resumes() {
+    let (task, mut pool) = (task(), pool(2));
+    let mut whole = Babbling::new(4, Fidelity::QuasiStatic);
+    let first = whole.experience(&task, 30, &mut pool).unwrap();
+    let mut resumed = Babbling::resume(4, Fidelity::QuasiStatic, whole.movements(), whole.legal());
+    let rest = whole.experience(&task, 30, &mut pool).unwrap();
+    assert_eq!(resumed.experience(&task, 30, &mut pool).unwrap(), rest);
+    assert_eq!(
+        (resumed.movements(), resumed.legal()),
+        (whole.movements(), whole.legal())
+    );
+    assert_ne!(first, rest);
+    let mut other = Babbling::new(5, Fidelity::QuasiStatic);
+    assert_ne!(other.experience(&task, 30, &mut pool).unwrap(), first);
+}
+
+/// About one movement in five is legal, as the paper says, with the percepts in their ranges and
+/// b2 = 1 − b1. Catches illegal movements that are experienced, and counts of something else.
+#[test]
+fn one_movement_in_five_is_legal() {
+    let (experiences, movements) = babble(Fidelity::Full, &[400], 2);
+    let rate = 400.0 / movements as f64;
+    assert!((0.12..0.26).contains(&rate), "{rate}");
+    for Experience { eye, obstacle, b } in experiences {
+        assert!(eye.iter().all(|x| (0.0..=1.0).contains(x)));
+        assert!(obstacle.iter().all(|x| x.abs() < 1.6));
+        assert!((b[0] + b[1] - 1.0).abs() < 1e-6 && (0.01..=0.99).contains(&b[0]));
+    }
+}
+
+/// A body that hardly leaves a legal movement is an error that counts what was tried, or of the
+/// task; never an endless search.
+#[test]
+fn nothing_legal_is_an_error() {
+    let config = Config::from_json(
+        r#"{"body": {"joints": {"shoulder": {"lower_deg": 0, "upper_deg": 2},
+            "elbow": {"lower_deg": 10, "upper_deg": 12}}}}"#,
+    );
+    let task = ReachTask::new(config.unwrap(), Options::default()).unwrap();
+    let result = Babbling::new(0, Fidelity::Full).experience(&task, 1, &mut pool(2));
+    assert!(matches!(
+        result,
+        Err(AgentError::Env(_) | AgentError::NothingLegal { .. })
+    ));
+}
+
+fn learnt(variant: Variant, portions: &[usize], threads: usize) -> Hebb {
+    let (task, mut pool) = (task(), pool(threads));
+    let mut babbling = Babbling::new(4, Fidelity::QuasiStatic);
+    let mut hebb = Hebb::new(HebbConfig::variant(variant)).unwrap();
+    for &n in portions {
+        let experiences = babbling.experience(&task, n, &mut pool).unwrap();
+        pool.run(|| hebb.learn(&experiences)).unwrap().unwrap();
+    }
+    hebb
+}
+
+/// Learning in two calls is learning in one, on any number of threads, to the bit. Catches running
+/// averages that start anew with each call.
+#[test]
+fn learning_goes_on() {
+    for variant in [Variant::Paper, Variant::Conjunctive] {
+        let whole = learnt(variant, &[120], 1);
+        for (portions, threads) in [(&[120][..], 8), (&[50, 70][..], 2)] {
+            let other = learnt(variant, portions, threads);
+            assert_eq!(other.weights().weights(), whole.weights().weights());
+            assert_eq!(other.weights().a_bar(), whole.weights().a_bar());
+            assert_eq!(other.weights().g_bar(), whole.weights().g_bar());
+        }
+    }
+}
+
+/// Share of the cases that the agent's movements solve in the full simulation.
+fn success(task: &ReachTask, hebb: &Hebb, cases: &[ReachCase]) -> f64 {
+    let solved = cases.iter().filter(|case| {
+        let gaze = task.foveate(case).unwrap();
+        let camera = task.eye.camera(gaze);
+        let single = |x: [f64; 2]| x.map(|x| x as f32);
+        let obstacle = ReachTask::obstacle_angles(&camera, case.obstacle.as_ref());
+        let b = hebb
+            .decide(single(task.eye.normalised(gaze)), single(obstacle))
+            .unwrap();
+        let path = MovementPath::new(task, case, b).unwrap();
+        path.play(task, case, Fidelity::Full, |_| {}).outcome == Outcome::Success
+    });
+    solved.count() as f64 / cases.len() as f64
+}
+
+/// It learns: 250 legal movements are enough for the conjunctive map to solve more than 80 % of
+/// cases it has not seen, where the silent map it started from solves none.
+#[test]
+fn conjunctive_map_learns_from_250_movements() {
+    let task = task();
+    let cases = protocol::table1(&task, 200, 0, Purpose::Validation, &mut pool(2)).unwrap();
+    let newborn = Hebb::new(HebbConfig::variant(Variant::Conjunctive)).unwrap();
+    assert_eq!(success(&task, &newborn, &cases), 0.0);
+    let mut babbling = Babbling::new(0, Fidelity::Full);
+    let experiences = babbling.experience(&task, 250, &mut pool(2)).unwrap();
+    let mut hebb = newborn;
+    hebb.learn(&experiences).unwrap();
+    let share = success(&task, &hebb, &cases);
+    println!("success after 250 legal movements: {share:.3}");
+    assert!(share > 0.8, "{share}");
+}
+
+/// Numbers of the maps out of bounds are named; percepts that are no numbers never become a NaN.
+#[test]
+fn bad_configs_and_percepts_are_named() {
+    let base = HebbConfig::variant(Variant::Conjunctive);
+    let cases = [
+        (
+            HebbConfig {
+                output_neurons: 1,
+                ..base.clone()
+            },
+            "output_neurons",
+        ),
+        (
+            HebbConfig {
+                obstacle_neurons: 102,
+                ..base.clone()
+            },
+            "obstacle_neurons",
+        ),
+        (
+            HebbConfig {
+                target_neurons: 0,
+                ..base.clone()
+            },
+            "target_neurons",
+        ),
+        (
+            HebbConfig {
+                obstacle_field_deg: f64::NAN,
+                ..base.clone()
+            },
+            "obstacle_field_deg",
+        ),
+        (
+            HebbConfig {
+                sigma: 0.0,
+                ..base.clone()
+            },
+            "sigma",
+        ),
+    ];
+    for (config, field) in cases {
+        let error = Hebb::new(config).unwrap_err().to_string();
+        assert!(error.contains(field), "{error}");
+    }
+    assert!(
+        "hebb"
+            .parse::<Variant>()
+            .unwrap_err()
+            .to_string()
+            .contains("conjunctive")
+    );
+    let hebb = Hebb::new(base).unwrap();
+    let decision = hebb.decide([f32::NAN; 2], [0.0; 2]);
+    assert!(decision.is_err() || decision.unwrap().iter().all(|b| b.is_finite()));
+}

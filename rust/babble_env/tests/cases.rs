@@ -1,0 +1,186 @@
+//! Cases: what is drawn can be played, and which cases are drawn depends on nothing else.
+
+mod playing;
+
+use babble_env::case::{CaseRequest, ObstacleRequest, obstacle_at};
+use babble_env::movement::{Fidelity, MovementPath};
+use babble_env::{Config, Control, Options, Pool, Purpose, ReachCase, ReachTask, Stream, protocol};
+use nalgebra::Vector2;
+use playing::{control, task};
+
+fn tasks() -> [ReachTask; 2] {
+    ["paper", "icub"]
+        .map(|name| ReachTask::new(Config::profile(name).unwrap(), Options::default()).unwrap())
+}
+
+/// Whether some movement of the grid b1 = .01, .02, … solves the case.
+fn is_solvable(task: &ReachTask, case: &ReachCase, fidelity: Fidelity) -> bool {
+    (1..100).map(|k| f64::from(k) / 100.0).any(|b1| {
+        let path = MovementPath::new(task, case, [b1, 1.0 - b1]).unwrap();
+        path.is_legal(task, case, fidelity)
+    })
+}
+
+fn assert_playable(task: &ReachTask, case: &ReachCase) {
+    let obstacle = case.obstacle.expect("halfway");
+    let middle = (Vector2::from(case.hand) + Vector2::from(case.target)) / 2.0;
+    assert!((obstacle.centre - middle).norm() < 1e-12);
+    assert!((task.arm.fingertip(case.start) - Vector2::from(case.hand)).norm() < 1e-9);
+    let end = task.arm.posture_at(case.target.into()).unwrap();
+    for q in [case.start, end] {
+        assert!(task.arm.in_range(q) && obstacle.clearance(&task.arm, q) > 0.0);
+    }
+}
+
+/// Random geometries keep to item 16: ends in reach and clear, obstacle halfway, the distance in
+/// its range and spread over it. Catches an obstacle at the target, and starts rejected one-sidedly.
+#[test]
+fn geometries_keep_to_the_config() {
+    for task in tasks() {
+        let mut stream = Stream::new(Purpose::Test, 1, 0);
+        let [near, far] = task.config.reach.distance_m;
+        let mut distances = Vec::new();
+        for _ in 0..500 {
+            let case = ReachCase::draw_geometry(&task, &mut stream).unwrap();
+            assert_playable(&task, &case);
+            distances.push(case.distance());
+        }
+        distances.sort_by(f64::total_cmp);
+        assert!(near <= distances[0] && distances[499] <= far);
+        let tenth = (far - near) / 10.0;
+        assert!(distances[499] > far - tenth && distances[25] < near + 5.0 * tenth);
+    }
+}
+
+/// A case drawn as legal has a movement that neither touches nor violates. Catches a draw that
+/// keeps the geometry of one try and the movement of another.
+#[test]
+fn legal_cases_can_be_solved() {
+    for task in tasks() {
+        for fidelity in [Fidelity::Full, Fidelity::QuasiStatic] {
+            for i in 0..30 {
+                let mut stream = Stream::new(Purpose::Test, 2, i);
+                let case = ReachCase::draw_legal(&task, &mut stream, fidelity).unwrap();
+                assert_playable(&task, &case);
+                assert!(is_solvable(&task, &case, fidelity), "{case:?}");
+            }
+        }
+    }
+}
+
+/// Table I's cases: legal in the full simulation, the same for any number of threads, a longer
+/// list begins with the shorter, and no list shares a case with another seed or purpose.
+#[test]
+fn table1_depends_on_purpose_seed_and_index_alone() {
+    let task = task(control(Control::Pattern));
+    let draw = |n, seed, purpose, threads| {
+        protocol::table1(&task, n, seed, purpose, &mut Pool::new(threads).unwrap()).unwrap()
+    };
+    let cases = draw(40, 0, Purpose::Test, 1);
+    assert!(
+        cases
+            .iter()
+            .all(|case| is_solvable(&task, case, Fidelity::Full))
+    );
+    for threads in [2, 8] {
+        assert_eq!(draw(40, 0, Purpose::Test, threads), cases);
+    }
+    assert_eq!(draw(15, 0, Purpose::Test, 2), cases[..15]);
+    let others = [
+        draw(40, 1, Purpose::Test, 2),
+        draw(40, 0, Purpose::Validation, 2),
+        draw(40, 0, Purpose::Learning, 2),
+        draw(40, 0, Purpose::Environment, 2),
+    ];
+    for other in others {
+        assert!(other.iter().all(|case| !cases.contains(case)));
+    }
+}
+
+/// Streams differ in purpose, seed and index, and repeat themselves. Catches a seed that is added
+/// to the index, so that environment 1 of seed 0 is environment 0 of seed 1.
+#[test]
+fn streams_do_not_coincide() {
+    let first = |purpose, seed, index| {
+        let mut stream = Stream::new(purpose, seed, index);
+        [(); 2].map(|()| stream.uniform(0.0, 1.0).to_bits())
+    };
+    let purposes = [
+        Purpose::Environment,
+        Purpose::Learning,
+        Purpose::Validation,
+        Purpose::Test,
+        Purpose::Policy,
+    ];
+    let mut seen = std::collections::BTreeSet::new();
+    for purpose in purposes {
+        for seed in (0..20).chain([u64::MAX]) {
+            for index in 0..20 {
+                assert_eq!(first(purpose, seed, index), first(purpose, seed, index));
+                seen.insert(first(purpose, seed, index));
+            }
+        }
+    }
+    assert_eq!(seen.len(), 5 * 21 * 20);
+    let mut stream = Stream::new(Purpose::Test, 0, 0);
+    let mean = (0..10_000).map(|_| stream.uniform(-1.0, 3.0)).sum::<f64>() / 1e4;
+    assert!((mean - 1.0).abs() < 0.05, "{mean}");
+}
+
+/// Fig. 4: 4 targets, 36 starts on a circle around each, of which those kept can be played.
+#[test]
+fn fig4_is_144_places() {
+    for task in tasks() {
+        let cases = protocol::fig4(&task);
+        assert_eq!(cases.len(), 144);
+        let [near, far] = task.config.reach.distance_m;
+        for targets in cases.chunks_exact(36) {
+            let kept: Vec<_> = targets.iter().flatten().collect();
+            assert!(!kept.is_empty());
+            for case in kept {
+                assert_playable(&task, case);
+                let target = targets.iter().flatten().next().unwrap().target;
+                assert_eq!(case.target, target);
+                assert!((case.distance() - 0.5 * (near + far)).abs() < 1e-12);
+            }
+        }
+    }
+}
+
+/// What is asked of a case is what is played, and only the rest is drawn. Catches a request that is
+/// taken for a hint.
+#[test]
+fn requests_are_kept() {
+    let task = task(control(Control::DeltaPosture));
+    let mut stream = Stream::new(Purpose::Test, 3, 0);
+    let legal = ReachCase::draw_legal(&task, &mut stream, Fidelity::QuasiStatic).unwrap();
+    let (start, target) = (Some(legal.hand), Some(legal.target));
+    let elsewhere = obstacle_at(&task, [-0.3, -0.3]);
+    let wanted = |request: &ObstacleRequest, case: &ReachCase| match request {
+        ObstacleRequest::Halfway => case.obstacle == Some(obstacle_at(&task, middle(case))),
+        ObstacleRequest::Absent => case.obstacle.is_none(),
+        ObstacleRequest::At(obstacle) => case.obstacle == Some(*obstacle),
+    };
+    let obstacles = [
+        ObstacleRequest::Halfway,
+        ObstacleRequest::Absent,
+        ObstacleRequest::At(elsewhere),
+    ];
+    for obstacle in obstacles {
+        for (start, target) in [(None, None), (start, None), (None, target), (start, target)] {
+            let request = CaseRequest {
+                start,
+                target,
+                obstacle,
+            };
+            let case = request.draw(&task, &mut stream).unwrap();
+            assert!(start.is_none_or(|p| p == case.hand), "{request:?}");
+            assert!(target.is_none_or(|p| p == case.target), "{request:?}");
+            assert!(wanted(&obstacle, &case), "{request:?}");
+        }
+    }
+}
+
+fn middle(case: &ReachCase) -> [f64; 2] {
+    ((Vector2::from(case.hand) + Vector2::from(case.target)) / 2.0).into()
+}

@@ -1,0 +1,50 @@
+//! Trajectories to the bit, on every platform.
+//!
+//! The snapshot holds a hash of the environment's state after 1, 10, 100 and 1,000 steps. It moves
+//! with every change of physics, geometry, eye, random streams or automatic resets. Such a change
+//! needs a reason, given in its commit and in the changelog, as users' numbers move with it; one
+//! that was not meant to move anything is a mistake.
+
+mod playing;
+
+use std::collections::BTreeMap;
+
+use babble_env::{Autoreset, Config, Control};
+use playing::{Actions, batch, control};
+use xxhash_rust::xxh3::xxh3_64;
+
+/// Hash of the state alone: a config field more moves no trajectory.
+fn hash(env: &babble_env::Batch) -> String {
+    let state = postcard::to_stdvec(env.env(0).unwrap().state()).unwrap();
+    format!("{:016x}", xxh3_64(&state))
+}
+
+#[test]
+fn trajectories_are_golden() {
+    let mut golden = BTreeMap::new();
+    for &of in Control::ALL {
+        let mut env = batch(control(of), 1, Autoreset::NextStep, 1, 1);
+        let mut actions = Actions::new(1);
+        for step in 1..=1000 {
+            env.step(&actions.draw()).unwrap();
+            if [1, 10, 100, 1000].contains(&step) {
+                golden.insert(format!("{of} {step:4}"), hash(&env));
+            }
+        }
+    }
+    insta::with_settings!({
+        description => "A change here needs a reason in the changelog: see the head of golden.rs.",
+        omit_expression => true,
+    }, { insta::assert_json_snapshot!(golden) });
+}
+
+/// The defaults of both bodies, field by field: they are part of an environment's version.
+#[test]
+fn default_configs_are_golden() {
+    for name in babble_env::config::PROFILES {
+        insta::with_settings!({
+            description => "A change here is a new version of the environments.",
+            omit_expression => true,
+        }, { insta::assert_json_snapshot!(name, Config::profile(name).unwrap()) });
+    }
+}

@@ -3,6 +3,7 @@
 use babble_body::eye::{Gaze, Pinhole, Primitive, is_red, render_rgb, render_smooth, third_person};
 use babble_body::pose;
 use image::RgbImage;
+use image::imageops::thumbnail;
 use nalgebra::Vector2;
 
 use crate::case::ReachCase;
@@ -22,6 +23,10 @@ named_enum!(
 
 /// Smallest and largest edge of a picture \[pixel\].
 const EDGE: std::ops::RangeInclusive<u32> = 16..=4096;
+
+/// Fewest rays along an edge of the eye's image: with fewer the target falls between them, and a
+/// pixel is the mean of several rays.
+const EYE_RAYS: u32 = 160;
 
 /// A picture of an episode.
 ///
@@ -50,14 +55,19 @@ pub fn picture(
     Ok(match view {
         View::ThirdPerson => render_smooth(&scene, &third_person(width as usize, height as usize)),
         View::Eye => {
-            let edge = width.min(height) as usize;
+            let edge = width.min(height);
+            let rays = EYE_RAYS.div_ceil(edge);
             let camera = task
                 .eye
-                .camera_sized(state.gaze, edge)
-                .middle(width as usize, height as usize);
+                .camera_sized(state.gaze, (edge * rays) as usize)
+                .middle((width * rays) as usize, (height * rays) as usize);
             let mut image = render_rgb(&scene, &camera);
             draw_target_on_top(&mut image, &scene[..1], &camera);
-            image
+            if rays == 1 {
+                image
+            } else {
+                thumbnail(&image, width, height)
+            }
         }
     })
 }

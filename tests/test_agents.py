@@ -44,13 +44,13 @@ def test_weights_are_copies_in_the_documented_layout(learnt):
     assert weights["weights"].shape == (441, n_in)
     assert weights["g_bar"].shape == (n_in,)
     assert weights["a_bar"].shape == (441,)
-    assert np.abs(weights["weights"]).max() <= 0.2
+    assert np.abs(weights["weights"]).max() <= np.float32(0.2)
     assert np.abs(weights["weights"]).max() > 0
     before = learnt.predict(some_senses())[0]
     for array in weights.values():
         array[:] = 7
     assert_same(learnt.predict(some_senses())[0], before)
-    assert learnt.weights["weights"].max() <= 0.2
+    assert learnt.weights["weights"].max() <= np.float32(0.2)
 
 
 def test_learning_in_parts_or_with_other_threads_is_the_same(learnt):

@@ -19,6 +19,7 @@ IMPORT = "import {}; from time import perf_counter as t; s = t(); import {}; pri
 
 
 def test_import_beyond_gymnasiums_own(benchmark):
+    """The row is a whole interpreter; `seconds` is the import after gymnasium's."""
     program = IMPORT.format("gymnasium", "gym_babble")
     command = [sys.executable, "-c", program]
 

@@ -1,0 +1,290 @@
+"""The command line: results on stdout, one line for what is wrong, exit codes."""
+
+import csv
+import json
+import subprocess
+import sys
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from stable_baselines3 import PPO
+
+from gym_babble import HebbBabbling, evaluate, scenarios
+from gym_babble.cli import main
+from gym_babble.ppo import train_ppo
+from gym_babble.registration import ENVIRONMENTS
+from gym_babble.tables import OUTCOMES
+
+MOVEMENTS = "500"
+
+
+@pytest.fixture
+def run(capsys):
+    """Runs the command line; gives exit code, stdout and stderr."""
+
+    def run(*words):
+        with pytest.raises(SystemExit) as ended:
+            main([str(word) for word in words])
+        printed = capsys.readouterr()
+        return ended.value.code, printed.out, printed.err
+
+    return run
+
+
+@pytest.fixture
+def run_json(run):
+    """The document that a command prints with --json, and nothing beside it."""
+
+    def run_json(*words):
+        code, printed, _ = run(*words, "--json")
+        assert code == 0
+        return json.loads(printed)
+
+    return run_json
+
+
+@pytest.fixture(scope="module")
+def agent_file(tmp_path_factory):
+    path = tmp_path_factory.mktemp("agents") / "icub.safetensors"
+    env = gym.make("BabbleReachPattern-v0", body="icub")
+    HebbBabbling(env, seed=1).learn(500).save(path)
+    return path
+
+
+def check_rates(rates, cases):
+    assert rates["cases"] == cases
+    assert sum(rates[name]["count"] for name in OUTCOMES) == cases
+    assert sum(rates[name]["rate"] for name in OUTCOMES) == pytest.approx(1.0)
+    assert all(
+        rates[name]["low"] <= rates[name]["rate"] <= rates[name]["high"] for name in OUTCOMES
+    )
+
+
+def test_help_needs_no_extra():
+    blocked = ("matplotlib", "PIL", "moviepy", "pygame", "stable_baselines3", "torch")
+    program = (
+        f"import sys; sys.modules.update(dict.fromkeys({blocked}));"
+        "from gym_babble.cli import main; main(['compare', '--help'])"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=False
+    )
+    assert run.returncode == 0
+    assert "--report" in run.stdout
+
+
+def test_no_word_shows_the_commands(run):
+    code, printed, _ = run()
+    assert code == 0
+    assert all(name in printed for name in ("list", "babble", "compare", "reproduce", "doctor"))
+
+
+def test_list(run, run_json):
+    assert [row["id"] for row in run_json("list")] == [row.id for row in ENVIRONMENTS]
+    _, printed, _ = run("list")
+    assert all(row.id in printed for row in ENVIRONMENTS)
+
+
+@pytest.mark.parametrize("row", ENVIRONMENTS, ids=lambda row: row.id)
+def test_info_tells_the_spec(run, run_json, row):
+    described = run_json("info", row.id)
+    senses = [entry for entry in described["senses"] if "goal" not in entry["name"]]
+    assert sum(len(entry["labels"]) for entry in senses) == 11
+    assert all(entry["unit"] for entry in described["senses"])
+    assert described["control"] == row.control
+    code, printed, _ = run("info", row.id)
+    assert code == 0
+    assert all(entry["name"] in printed for entry in described["senses"])
+
+
+def test_babble_saves_an_agent_that_evaluate_tests(run_json, tmp_path):
+    path = tmp_path / "agent.safetensors"
+    told = run_json("babble", "--movements", MOVEMENTS, "--seed", 3, "--out", path)
+    agent = HebbBabbling.load(path)
+    assert told["legal_movements"] == agent.legal_movements == 500
+    assert told["legal_rate"] == agent.legal_rate
+    tested = run_json("evaluate", path, "--cases", 50, "--seed", 2)
+    check_rates(tested, 50)
+    expected = evaluate(agent, cases=scenarios("table1", 50, 2))
+    assert tested["success"]["rate"] == expected.rate("success")
+
+
+def test_babble_quasi_static(run_json, tmp_path):
+    told = run_json("babble", "--quasi-static", "--movements", 50, "--out", tmp_path / "agent")
+    assert told["quasi_static"]
+
+
+def test_a_saved_agent_is_tested_on_the_body_it_learnt_on(run_json, agent_file):
+    own = run_json("evaluate", agent_file, "--cases", 100)
+    assert own == run_json("evaluate", agent_file, "--cases", 100, "--body", "icub")
+    assert own != run_json("evaluate", agent_file, "--cases", 100, "--body", "paper")
+
+
+@pytest.mark.parametrize("name", ["random", "scripted", "oracle"])
+@pytest.mark.parametrize("env_id", ["BabbleReachPattern-v0", "BabbleReach-v0"])
+def test_evaluate_agents_by_name(run_json, name, env_id):
+    tested = run_json("evaluate", name, "--cases", 20, "--env-id", env_id)
+    assert tested["env_id"] == env_id
+    check_rates(tested, 20)
+
+
+def test_evaluate_splits_differ(run_json):
+    random = ("evaluate", "random", "--cases", 100)
+    test, validation = run_json(*random), run_json(*random, "--split", "validation")
+    assert test["success"] != validation["success"]
+
+
+def test_evaluate_prints_the_papers_rates_beside(run):
+    code, printed, _ = run("evaluate", "scripted", "--cases", 20)
+    assert code == 0
+    assert ".670" in printed
+    assert "scripted" in printed
+
+
+def test_evaluate_a_model_of_stable_baselines3(run, run_json, tmp_path):
+    path = tmp_path / "model.zip"
+    train_ppo("pattern", steps=1, validation_cases=0).agent.save(path)
+    check_rates(run_json("evaluate", path, "--cases", 20, "--env-id", "BabbleReachPattern-v0"), 20)
+    code, _, told = run("evaluate", path)
+    assert code == 2
+    assert "--env-id" in told
+    PPO("MlpPolicy", "Pendulum-v1", device="cpu").save(path)
+    code, _, told = run("evaluate", path, "--env-id", "BabbleReach-v0")
+    assert code == 2
+    assert "observations" in told
+
+
+def test_compare_writes_a_report_of_one_file(run_json, tmp_path):
+    folder = tmp_path / "report"
+    document = run_json(
+        *("compare", "--agents", "hebb-paper,random", "--cases", 50, "--movements", MOVEMENTS),
+        *("--report", folder),
+    )
+    assert document == json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    assert [row["agent"] for row in document["agents"]] == ["hebb-paper", "random"]
+    for row in document["agents"]:
+        check_rates(row["test"], 50)
+    page = (folder / "index.html").read_text(encoding="utf-8")
+    assert 'src="data:image/png;base64,' in page
+    assert 'src="data:image/svg+xml;base64,' in page
+    assert "http://" not in page
+    assert "https://" not in page
+    assert str(tmp_path.parent.parent) not in page.replace(str(folder), "")
+
+
+def test_reproduce_table1(run_json, run, tmp_path):
+    words = ("reproduce", "table1", "--seeds", 2, "--cases", 50, "--movements", MOVEMENTS)
+    document = run_json(*words, "--out", tmp_path)
+    assert document == json.loads((tmp_path / "table1.json").read_text(encoding="utf-8"))
+    assert [row["seed"] for row in document["by_seed"]] == [0, 1]
+    check_rates(document["pooled"], 100)
+    mean = np.mean([row["success"]["rate"] for row in document["by_seed"]])
+    assert document["over_seeds"]["success"]["mean"] == pytest.approx(mean)
+    assert document["pooled"]["success"]["rate"] == pytest.approx(mean)
+    with (tmp_path / "table1.csv").open(newline="") as file:
+        lines = list(csv.DictReader(file))
+    assert [float(line["success"]) for line in lines] == [
+        row["success"]["rate"] for row in document["by_seed"]
+    ]
+    code, printed, _ = run(*words, "--control", "delta_posture", "--out", tmp_path)
+    assert code == 0
+    assert "pooled" in printed
+
+
+@pytest.mark.parametrize("figure", ["fig2", "fig4", "fig5"])
+def test_reproduce_figures(run, tmp_path, figure):
+    path = tmp_path / f"{figure}.png"
+    learning = () if figure == "fig2" else ("--movements", 1000)
+    code, _, _ = run("reproduce", figure, "--out", path, *learning)
+    assert code == 0
+    assert path.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "begins"),
+    [("png", "frame0000.png", b"\x89PNG"), ("gif", "episode.gif", b"GIF8")],
+)
+def test_render(run, tmp_path, kind, name, begins):
+    words = ("--format", kind, "--size", 48, "--env-id", "BabbleReachPattern-v0")
+    code, _, told = run("render", "scripted", "--out", tmp_path / "film", *words)
+    assert code == 0
+    assert "success" in told
+    assert (tmp_path / "film" / "sheet.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "film" / name).read_bytes().startswith(begins)
+
+
+def test_doctor(run, run_json):
+    found = run_json("doctor")
+    assert found["same_bits"]
+    assert found["build"] == "release"
+    code, printed, _ = run("doctor")
+    assert code == 0
+    assert "as it should be" in printed
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["info", "BabbleReach-v9"], "BabbleReach-v0"),
+        (["info", "BabbleReach-v0", "--body", "octopus"], "octopus"),
+        (["info", "BabbleReach-v0", "--body", "none.toml"], "none.toml"),
+        (["evaluate", "nobody"], "nobody"),
+        (["evaluate", "random", "--env-id", "Pendulum-v1"], "Pendulum-v1"),
+        (["evaluate", "random", "--cases", "0"], "--cases"),
+        (["evaluate", "random", "--cases", "many"], "--cases"),
+        (["evaluate", "random", "--split", "learning"], "--split"),
+        (["evaluate", "random", "--seed", "-1"], "--seed"),
+        (["babble", "--out", "nowhere/agent"], "nowhere"),
+        (["babble"], "--out"),
+        (["babble", "--out", "agent", "--variant", "other"], "--variant"),
+        (["babble", "--out", "agent", "--movements", "0"], "--movements"),
+        (["compare", "--agents", "hebb-paper,nobody"], "nobody"),
+        (["compare", "--agents", ""], "hebb-paper"),
+        (["compare", "--task", "fly"], "--task"),
+        (["compare", "--seeds", "0"], "--seeds"),
+        (["reproduce", "fig3"], "fig3"),
+        (["reproduce", "fig5", "--out", "picture.xyz"], "picture.xyz"),
+        (["reproduce", "table1", "--control", "torque"], "--control"),
+        (["render", "random", "--out", "film", "--format", "avi"], "--format"),
+        (["dance"], "dance"),
+    ],
+)
+def test_bad_input_is_one_line_and_exit_code_2(run, monkeypatch, tmp_path, words, said):
+    monkeypatch.chdir(tmp_path)
+    code, printed, told = run(*words)
+    assert code == 2
+    assert not printed
+    assert told.startswith("error: ")
+    assert told.count("\n") == 1
+    assert said in told
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("content", [b"", b"not an agent", b"PK\x05\x06" + bytes(18)])
+def test_a_broken_agent_file_is_named(run, tmp_path, content):
+    path = tmp_path / "broken"
+    path.write_bytes(content)
+    code, _, told = run("evaluate", path, "--env-id", "BabbleReachPattern-v0")
+    assert code == 2
+    assert told.startswith("error: ")
+    assert told.count("\n") == 1
+    assert "broken" in told
+
+
+def test_a_cut_agent_file_is_named(run, tmp_path, agent_file):
+    path = tmp_path / "cut"
+    path.write_bytes(agent_file.read_bytes()[:-100])
+    code, _, told = run("evaluate", path)
+    assert code == 2
+    assert "cut" in told
+
+
+def test_a_missing_extra_is_named_before_any_work(run, monkeypatch, tmp_path):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    for words in (["compare", "--report", tmp_path / "r"], ["reproduce", "fig4"]):
+        code, printed, told = run(*words)
+        assert code == 1
+        assert not printed
+        assert "gym-babble[figures]" in told
+        assert told.count("\n") == 1

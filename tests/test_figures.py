@@ -1,0 +1,153 @@
+"""The figures, and the numbers behind them."""
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+from scipy import stats
+
+from gym_babble import HebbBabbling, Scripted, figures, scenarios
+from gym_babble.compare import Settings, compare
+from gym_babble.errors import ConfigError
+from gym_babble.film import contact_sheet
+from gym_babble.reproduce import starts_without_case, switched, ways, weight_sets
+from gym_babble.tables import share, t_interval
+
+
+@pytest.fixture(scope="module")
+def hebb():
+    return HebbBabbling(seed=0).learn(2_000)
+
+
+@pytest.fixture(scope="module")
+def found(hebb):
+    return ways(hebb, scenarios("fig4"))
+
+
+def lines_of(axes, style):
+    """Lines with more than a point, in a style."""
+    return [line for line in axes.lines if line.get_ls() == style and len(line.get_xdata()) > 1]
+
+
+def test_fig2_has_a_curve_for_each_b1_from_hand_to_target():
+    left, right = figures.fig2((0.3, 0.5, 0.7)).axes
+    for line in left.lines:
+        points = line.get_xydata()
+        assert points[0] == pytest.approx([0, 0], abs=1e-6)
+        assert points[-1] == pytest.approx([1, 1], abs=1e-3)
+    assert len(left.lines) == 3
+    straight = left.lines[1].get_xydata()
+    assert straight[:, 0] == pytest.approx(straight[:, 1], abs=1e-9)
+    paths = lines_of(right, "-")[:3]
+    end = 20 * np.array([np.cos(np.radians(100)), np.sin(np.radians(100))])
+    for path in paths:
+        assert path.get_xydata()[-1] == pytest.approx(end, abs=0.05)
+    # b1 above one half passes on the left of the way from hand to target.
+    middle = paths[2].get_xydata()[100]
+    assert np.cross([*end, 0], [*middle, 0])[2] > 0
+
+
+def test_fig4_draws_each_way_once_bold_where_it_reaches(found):
+    left, right = figures.fig4(found, found[:3]).axes
+    reaching = [way for way in found if way.outcome == "success"]
+    assert 0 < len(reaching) < len(found)
+    assert len(lines_of(left, "-")) == len(reaching)
+    assert len(lines_of(left, ":")) == len(found) - len(reaching)
+    assert len(lines_of(right, "-")) + len(lines_of(right, ":")) == 3
+    assert lines_of(left, "-")[0].get_lw() > 1.5
+
+
+def test_ways_lead_from_start_to_target(found):
+    for way in found:
+        assert way.fingertip[0] == pytest.approx(way.case["start"], abs=1e-6)
+        if way.outcome == "success":
+            assert np.linalg.norm(way.fingertip[-1] - way.case["target"]) < 0.02
+
+
+def test_ways_curve_as_b1_says():
+    way = ways(Scripted(), scenarios("fig4", 1))[0]
+    start, target = np.array(way.case["start"]), np.array(way.case["target"])
+    middle = way.fingertip[len(way.fingertip) // 3]
+    turn = np.cross([*(target - start), 0], [*(middle - start), 0])[2]
+    assert (turn > 0) == (way.b1 > 0.5)
+
+
+def test_switched_exchanges_start_and_obstacle():
+    case = scenarios("fig4", 1)[0]
+    other = switched(case)
+    assert other["start"] == case["obstacle"][:2]
+    assert other["obstacle"] == (*case["start"], case["obstacle"][2])
+    assert switched(other) == case
+
+
+@pytest.mark.parametrize("body", ["paper", "icub"])
+def test_every_start_of_fig4_has_a_case_or_is_marked(body):
+    cases = scenarios("fig4", body=body)
+    missing = starts_without_case(body)
+    assert len(cases) + len(missing) == 4 * 36
+    starts = {tuple(np.round(case["start"], 9)) for case in cases}
+    assert not starts & {tuple(np.round(start, 9)) for start in missing}
+
+
+def test_fig5_sets_are_mirrored(hebb):
+    sets = weight_sets(hebb)
+    assert not (sets.left & sets.right).any()
+    assert min(sets.left.sum(), sets.right.sum()) > 20
+    assert sets.mirror_correlation > 0.95
+    # Weights of the left set are highest where b1 is above one half.
+    b2, b1 = np.unravel_index(sets.mean(sets.left).argmax(), (21, 21))
+    assert b1 > 10 > b2
+    assert sets.left[sets.typical(sets.left)]
+
+
+def test_fig5_has_four_patterns_and_the_map(hebb):
+    figure = figures.fig5(weight_sets(hebb))
+    pictures = [axes.images[0].get_array() for axes in figure.axes if axes.images]
+    assert [picture.shape for picture in pictures[:5]] == [(21, 21)] * 5
+
+
+def test_fig5_needs_the_papers_map_and_some_learning():
+    with pytest.raises(ConfigError, match="paper"):
+        weight_sets(HebbBabbling(variant="conjunctive"))
+    with pytest.raises(ConfigError, match="more movements"):
+        weight_sets(HebbBabbling())
+
+
+def test_learning_curves_have_a_line_for_each_learner():
+    comparison = compare(["hebb-paper", "scripted"], Settings(seeds=2, cases=10, movements=500))
+    figure = figures.learning_curves(comparison)
+    for axes in figure.axes:
+        assert len([line for line in axes.lines if line.get_marker() == "."]) == 2
+
+
+def test_the_same_figure_is_the_same_svg():
+    assert figures.svg(figures.fig2((0.3,))) == figures.svg(figures.fig2((0.3,)))
+
+
+def test_saved_figures_are_pictures_with_ink(tmp_path, hebb):
+    figures.save(figures.fig5(weight_sets(hebb)), tmp_path / "fig5.png")
+    picture = imread(tmp_path / "fig5.png")
+    assert picture.shape[0] > 300
+    assert picture[..., :3].std() > 0.05
+
+
+def test_a_contact_sheet_begins_and_ends_with_the_film():
+    frames = [np.full((4, 4, 3), i, np.uint8) for i in range(30)]
+    sheet = contact_sheet(frames)
+    assert sheet.shape == (8, 12, 3)
+    assert sheet[0, 0, 0] == 0
+    assert sheet[-1, -1, 0] == 29
+
+
+@pytest.mark.parametrize("n", [2, 3, 10, 11, 12, 31, 200])
+def test_t_interval_is_students(n):
+    values = np.random.default_rng(n).normal(0.7, 0.02, n)
+    low, high = stats.t.interval(0.95, n - 1, loc=values.mean(), scale=stats.sem(values))
+    assert t_interval(values) == pytest.approx((low, high), abs=1e-5)
+
+
+def test_one_value_has_no_t_interval():
+    assert t_interval([0.7]) is None
+
+
+def test_share_has_four_characters():
+    assert [share(x) for x in (0.0, 0.67, 1.0)] == [".000", ".670", "1.00"]

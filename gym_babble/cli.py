@@ -231,7 +231,7 @@ def compare(
     """Compare Hebb babbling with PPO, and with agents that need no learning."""
     if report is not None:
         _check_folder_of(report)
-        figures.fig2()  # A missing extra shows now, not after minutes.
+        figures.check_format(report / "figure.svg")  # A missing extra shows now.
     settings = Settings(body=body, seeds=seeds, cases=cases, movements=movements, progress_bar=True)
     keys = None if agents is None else [key.strip() for key in agents.split(",")]
     comparison = run_comparison(keys, settings, say=_say)

@@ -7,6 +7,7 @@ Table I. With several seeds, seed s has learners and 1,000 (`cases`) tests of it
 from __future__ import annotations
 
 import os
+from contextlib import nullcontext
 from dataclasses import asdict, dataclass, field
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -23,6 +24,7 @@ from gym_babble.tables import paper_tally, plain_table, rate_cells, share, tally
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from contextlib import AbstractContextManager
 
     from rich.table import Table
 
@@ -83,6 +85,8 @@ class Trained:
     seconds: float = 0.0
     """Clock time of learning [s]."""
     curve: tuple[CurvePoint, ...] = ()
+    while_acting: Callable[[], AbstractContextManager[None]] = nullcontext
+    """What to enter for its test."""
 
 
 @dataclass(frozen=True)
@@ -258,18 +262,20 @@ def _chosen(keys: Sequence[str] | None) -> list[Contender]:
 
 def _run(contender: Contender, settings: Settings, cases: Sequence[Sequence[Scenario]]) -> Result:
     trained = tuple(contender.train(settings, seed) for seed in range(settings.seeds))
-    tests = tuple(
-        evaluate(
-            one.agent,
-            one.env_id,
-            its_cases,
-            body=settings.body,
-            progress_bar=settings.progress_bar and contender.slow_test,
-            **one.env_kwargs,
-        )
-        for one, its_cases in zip(trained, cases, strict=True)
-    )
-    return Result(contender, trained, tests)
+    bar = settings.progress_bar and contender.slow_test
+    tests = []
+    for one, its_cases in zip(trained, cases, strict=True):
+        with one.while_acting():
+            test = evaluate(
+                one.agent,
+                one.env_id,
+                its_cases,
+                body=settings.body,
+                progress_bar=bar,
+                **one.env_kwargs,
+            )
+        tests.append(test)
+    return Result(contender, trained, tuple(tests))
 
 
 def _config(body: BodyLike) -> Config:
@@ -316,7 +322,7 @@ def _hebb(variant: str) -> Callable[[Settings, int], Trained]:
 
 def _ppo(preset: str) -> Callable[[Settings, int], Trained]:
     def train(settings: Settings, seed: int) -> Trained:
-        from gym_babble.ppo import train_ppo  # noqa: PLC0415 - it loads PyTorch
+        from gym_babble.ppo import one_thread, train_ppo  # noqa: PLC0415 - it loads PyTorch
 
         ppo = train_ppo(
             preset,
@@ -335,6 +341,7 @@ def _ppo(preset: str) -> Callable[[Settings, int], Trained]:
             control_steps=ppo.control_steps,
             seconds=ppo.seconds,
             curve=tuple(CurvePoint(p.steps * steps, p.seconds, p.success) for p in ppo.curve),
+            while_acting=one_thread,
         )
 
     return train

@@ -54,16 +54,20 @@ STYLE: Any = {
 }
 
 
+def _matplotlib() -> Any:
+    try:
+        import matplotlib as mpl
+    except ImportError as error:
+        raise MissingExtraError("matplotlib", "figures") from error
+    return mpl
+
+
 def _styled(draw: Callable[P, T]) -> Callable[P, T]:
     """Draws in the style of this module, whatever the user's own settings."""
 
     @wraps(draw)
     def styled(*args: P.args, **kwargs: P.kwargs) -> T:
-        try:
-            from matplotlib import rc_context
-        except ImportError as error:
-            raise MissingExtraError("matplotlib", "figures") from error
-        with rc_context(STYLE):
+        with _matplotlib().rc_context(STYLE):
             return draw(*args, **kwargs)
 
     return styled
@@ -82,16 +86,15 @@ def _axes(size: tuple[float, float], columns: int, **kwargs: Any) -> tuple[Figur
 def svg(figure: Figure) -> bytes:
     """The figure as an SVG file, the same bytes for the same figure."""
     buffer = BytesIO()
-    figure.savefig(buffer, format="svg", metadata={"Date": None})
+    figure.savefig(buffer, format="svg", metadata={"Date": None}, transparent=True)
     return buffer.getvalue()
 
 
 def check_format(path: Path) -> None:
     """Raises ConfigError if matplotlib writes no files with this ending."""
-    try:
-        from matplotlib.backend_bases import FigureCanvasBase
-    except ImportError as error:
-        raise MissingExtraError("matplotlib", "figures") from error
+    _matplotlib()
+    from matplotlib.backend_bases import FigureCanvasBase
+
     known = FigureCanvasBase.get_supported_filetypes()
     if path.suffix.removeprefix(".") not in known:
         raise ConfigError(f"{path}: a picture's name ends with one of {', '.join(sorted(known))}")
@@ -221,7 +224,7 @@ def _draw_sets(ax: Axes, sets: WeightSets) -> None:
 @_styled
 def learning_curves(comparison: Comparison) -> Figure:
     """Success on validation cases over the control steps simulated and over clock time."""
-    figure, (left, right) = _axes((9.5, 3.8), 2, sharey=True)
+    figure, (left, right) = _axes((9.5, 4.2), 2, sharey=True)
     for result in comparison.results:
         colour = LINES.get(result.contender.key, INK)
         name = f"{result.contender.title}, {result.contender.detail}"
@@ -239,5 +242,5 @@ def learning_curves(comparison: Comparison) -> Figure:
         ax.set(xscale="log", xlabel=label, ylim=(0, 1))
         ax.grid(axis="y", color="#e4e7eb", lw=0.6)
     left.set_ylabel("success on validation cases")
-    right.legend(loc="lower right", fontsize=8)
+    figure.legend(*right.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure

@@ -65,7 +65,7 @@ def record(
 
 
 def contact_sheet(
-    frames: list[NDArray[np.uint8]], *, columns: int = 4, rows: int = 2
+    frames: list[NDArray[np.uint8]], *, columns: int = 3, rows: int = 2
 ) -> NDArray[np.uint8]:
     """Frames spread evenly over an episode, from its first to its last, as one picture."""
     chosen = np.linspace(0, len(frames) - 1, columns * rows).round().astype(int)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import gymnasium
+from gymnasium import spaces
 
 from gym_babble.agents import HebbBabbling, Oracle, RandomBabbling, Scripted
 from gym_babble.errors import AgentFileError, ConfigError, MissingExtraError
@@ -23,7 +24,6 @@ __all__ = ["REFERENCES", "LoadedAgent", "check_env_id", "load_agent"]
 
 REFERENCES = ("random", "scripted", "oracle")
 PATTERN = "BabbleReachPattern-v0"
-SB3_OBSERVATIONS = ("senses", "flat", "goal")
 
 
 @dataclass(frozen=True)
@@ -93,18 +93,28 @@ def _stable_baselines(path: Path, env_id: str | None, body: BodyLike) -> LoadedA
         raise ConfigError(f"{path}: name the environment it learnt in with --env-id")
     try:
         import stable_baselines3
+        import torch
     except ImportError as error:
         raise MissingExtraError("stable-baselines3", "sb3") from error
+    torch.set_num_threads(1)  # These networks are too small for a second one to help.
     algorithm = getattr(stable_baselines3, _algorithm(path))
     try:
         model = algorithm.load(path, device="cpu")
     except Exception as error:  # Unpickling can raise anything.
         raise AgentFileError(f"{path}: {error}") from error
-    for obs in SB3_OBSERVATIONS:
-        env = gymnasium.make(env_id, obs=obs, body=body)
-        if env.observation_space == model.observation_space:
+    registered = next(row.obs for row in ENVIRONMENTS if row.id == env_id)
+    for obs in (registered, "senses", "flat"):
+        space = gymnasium.make(env_id, obs=obs, body=body).observation_space
+        if _shapes(space) == _shapes(model.observation_space):
             return LoadedAgent(model, env_id, body, {"obs": obs})
     raise ConfigError(f"{path}: it has learnt from other observations than {env_id} gives")
+
+
+def _shapes(space: spaces.Space[Any]) -> Any:
+    """Shapes by name; the bounds may differ, as they do between bodies."""
+    if isinstance(space, spaces.Dict):
+        return {name: part.shape for name, part in space.items()}
+    return space.shape
 
 
 def _algorithm(path: Path) -> str:

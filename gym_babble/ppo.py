@@ -33,7 +33,15 @@ if TYPE_CHECKING:
 
     from gym_babble.config import BodyLike
 
-__all__ = ["PRESETS", "ChosenSenses", "CurvePoint", "Preset", "TrainedPPO", "train_ppo"]
+__all__ = [
+    "PRESETS",
+    "ChosenSenses",
+    "CurvePoint",
+    "Preset",
+    "TrainedPPO",
+    "one_thread",
+    "train_ppo",
+]
 
 
 class ChosenSenses(BaseFeaturesExtractor):
@@ -175,7 +183,7 @@ def train_ppo(
     """
     chosen = _preset(preset)
     _check(steps, validation_cases, validations)
-    with _one_thread():
+    with one_thread():
         env = BabbleVecEnv(chosen.env_id, chosen.num_envs, body=body, **chosen.env_kwargs)
         model = _model(chosen, env, seed)
         cases = (
@@ -284,7 +292,7 @@ def _control_steps(env: BabbleVecEnv) -> int:
 
 
 @contextmanager
-def _one_thread() -> Iterator[None]:
+def one_thread() -> Iterator[None]:
     """These networks are too small for a second thread of PyTorch to help."""
     before = torch.get_num_threads()
     torch.set_num_threads(1)

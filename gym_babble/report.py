@@ -9,6 +9,8 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from gym_babble import figures
 from gym_babble.agents import HebbBabbling
 from gym_babble.doctor import versions
@@ -20,6 +22,7 @@ from gym_babble.tables import OUTCOMES, paper_tally, share, tally
 
 if TYPE_CHECKING:
     from gym_babble.compare import Comparison, Result
+    from gym_babble.scenarios import Scenario
 
 __all__ = ["write_report"]
 
@@ -102,9 +105,10 @@ def _table(comparison: Comparison) -> str:
     key = "".join(f'<i class="{name}"></i>{name.replace("_", " ")}' for name in OUTCOMES)
     settings = comparison.settings
     return (
-        f"<h2>Table I</h2>\n<p>{settings.cases:,} legal cases that no agent learnt from, times "
-        f"{settings.seeds} seed{'s' if settings.seeds > 1 else ''}; under each rate its 95 % "
-        "Wilson interval. Legal means that a babbled movement solved the case: each can be solved."
+        f"<h2>Table I</h2>\n<p>{settings.cases:,} legal cases that no agent learnt from"
+        f"{f', for each of {settings.seeds} seeds' if settings.seeds > 1 else ''}; under each rate "
+        "its 95 % Wilson interval. Legal means that a babbled movement solved the case: each can "
+        "be solved."
         f'</p>\n<div class="scroll"><table><tr>{head}</tr>\n'
         f"{paper.replace('<tr>', '<tr class=paper>')}{rows}</table></div>\n"
         f'<p class="note key">{key}</p>\n'
@@ -156,13 +160,17 @@ def _curves(comparison: Comparison) -> str:
 
 
 def _movement(comparison: Comparison) -> str:
-    """A success of the first agent of the table, longer than most, to be looked at."""
+    """A success of the first agent of the table, to be looked at."""
     result = comparison.results[0]
     trained = result.trained[0]
     body = comparison.settings.body
     cases = scenarios("table1", comparison.settings.cases, body=body)
-    pairs = list(zip(cases, result.tests[0].outcomes, strict=True))
-    case = max(pairs, key=lambda pair: (pair[1] == "success", _distance(pair[0])))[0]
+    good = [
+        case
+        for case, outcome in zip(cases, result.tests[0].outcomes, strict=True)
+        if outcome == "success"
+    ]
+    case = min(good or cases, key=_off_stage)
     loaded = LoadedAgent(trained.agent, trained.env_id, body, trained.env_kwargs)
     film = record(loaded, options={"scenario": case}, size=360)
     eye = record(loaded, options={"scenario": case}, camera="eye", size=630).frames[0]
@@ -178,9 +186,11 @@ def _movement(comparison: Comparison) -> str:
     )
 
 
-def _distance(case: Any) -> float:
-    (x0, y0), (x1, y1) = case["start"], case["target"]
-    return float(((x0 - x1) ** 2 + (y0 - y1) ** 2) ** 0.5)
+def _off_stage(case: Scenario) -> float:
+    """How little a case has to show: a short way, or one far from the middle of the picture."""
+    start, target = np.array(case["start"]), np.array(case["target"])
+    middle = 0.5 * (start + target)
+    return float(np.linalg.norm(middle - (0.0, 0.3)) - np.linalg.norm(target - start))
 
 
 def _trajectories(comparison: Comparison, key: str) -> str:

@@ -67,8 +67,8 @@ def _t_quantile(freedom: int) -> float:
 
 
 def share(rate: float) -> str:
-    """A rate with three digits and no leading zero, as the paper's tables have it."""
-    return f"{rate:.3f}".removeprefix("0")
+    """A rate in four characters: three digits without a leading zero, or 1.00."""
+    return f"{rate:.3f}".removeprefix("0")[:4]
 
 
 def rate_cells(rates: dict[str, Any]) -> list[str]:

@@ -25,6 +25,7 @@ try:
     from stable_baselines3 import PPO
     from stable_baselines3.common.callbacks import BaseCallback, CallbackList
     from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
+    from stable_baselines3.common.utils import LinearSchedule
 except ImportError as error:
     raise MissingExtraError("stable-baselines3", "sb3") from error
 
@@ -110,13 +111,13 @@ PRESETS: dict[str, Preset] = {
         steps=1_000_000,
         settings={
             "n_steps": 64,
-            "batch_size": 2048,
-            "n_epochs": 10,
-            "learning_rate": 1e-3,
+            "batch_size": 1024,
+            "n_epochs": 5,
+            "learning_rate": LinearSchedule(2.5e-3, 0.0, 1.0),
             "gamma": 0.99,
             "gae_lambda": 0.95,
         },
-        policy={"activation_fn": torch.nn.ReLU, "net_arch": [128, 128]},
+        policy={"activation_fn": torch.nn.ReLU, "net_arch": [128, 128], "log_std_init": -0.5},
     ),
 }
 """The presets by name. `pattern_obstacle` is given what the paper's agent sees,

@@ -4,7 +4,7 @@ Writes the runs as JSON, one a line, and their learning curves as a picture, and
 Seconds are clock time of learning; processor seconds include validation.
 
 python examples/ppo_study.py --out docs/studies              # the presets' own steps
-python examples/ppo_study.py --out docs/studies --long       # 4 and 3 times as many beside them
+python examples/ppo_study.py --out docs/studies --long 3     # and 4 or 3 times as many
 """
 
 import argparse
@@ -114,20 +114,22 @@ def main() -> None:
     parser.add_argument("--presets", nargs="+", choices=PRESETS, default=list(PRESETS))
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--steps", type=int, help="steps for all presets")
-    parser.add_argument("--long", action="store_true", help="longer runs too")
+    parser.add_argument("--long", type=int, default=0, help="seeds of longer runs beside them")
     parser.add_argument("--cases", type=int, default=1_000)
     arguments = parser.parse_args()
 
     arguments.out.mkdir(parents=True, exist_ok=True)
+    plan = [
+        (preset, arguments.steps or PRESETS[preset].steps, seed)
+        for preset in arguments.presets
+        for seed in range(arguments.seeds)
+    ]
+    plan += [(p, LONG[p], seed) for p in arguments.presets for seed in range(arguments.long)]
     runs: list[Run] = []
-    for preset in arguments.presets:
-        lengths = [arguments.steps or PRESETS[preset].steps]
-        lengths += [LONG[preset]] if arguments.long else []
-        for steps in lengths:
-            for seed in range(arguments.seeds):
-                runs.append(one_run(preset, steps, seed, arguments.cases))
-                lines = ",\n".join(json.dumps(run) for run in runs)
-                (arguments.out / "ppo_reach.json").write_text(f"[\n{lines}\n]\n")
+    for preset, steps, seed in plan:
+        runs.append(one_run(preset, steps, seed, arguments.cases))
+        lines = ",\n".join(json.dumps(run) for run in runs)
+        (arguments.out / "ppo_reach.json").write_text(f"[\n{lines}\n]\n")
     picture(runs, arguments.out / "ppo_reach.png")
     print(table(runs))
 

@@ -315,3 +315,17 @@ if __name__ == "__main__":
         timeout=120,
     )
     assert done.stdout.strip().endswith("equal"), done.stderr
+
+
+@pytest.mark.parametrize("module", ["sb3", "ppo"])
+def test_names_the_extra_that_is_missing(module):
+    script = f"""
+import sys
+sys.modules["stable_baselines3"] = None
+import gym_babble.{module}
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", script], check=False, capture_output=True, text=True, timeout=60
+    )
+    assert "MissingExtraError" in done.stderr
+    assert "gym-babble[sb3]" in done.stderr

@@ -86,7 +86,9 @@ def _axes(size: tuple[float, float], columns: int, **kwargs: Any) -> tuple[Figur
 def svg(figure: Figure) -> bytes:
     """The figure as an SVG file, the same bytes for the same figure."""
     buffer = BytesIO()
-    figure.savefig(buffer, format="svg", metadata={"Date": None}, transparent=True)
+    figure.savefig(
+        buffer, format="svg", metadata={"Date": None}, transparent=True, bbox_inches="tight"
+    )
     return buffer.getvalue()
 
 
@@ -104,13 +106,13 @@ def check_format(path: Path) -> None:
 def save(figure: Figure, path: Path) -> None:
     """Writes the figure in the format of the file's ending (png, svg, pdf ...)."""
     check_format(path)
-    figure.savefig(path, dpi=160)
+    figure.savefig(path, dpi=160, bbox_inches="tight")
 
 
 @_styled
 def fig2(b1: Sequence[float] = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)) -> Figure:
     """Paths of the pattern generators for b2 = 1 − b1 (Eq. 5), and turned and scaled (Eq. 6)."""
-    figure, (left, right) = _axes((8.0, 4.0), 2)
+    figure, (left, right) = _axes((9.5, 4.4), 2)
     theta, distance_m = 100 * pi / 180, 0.2
     turn = theta - pi / 4
     rotation = np.array([[cos(turn), -sin(turn)], [sin(turn), cos(turn)]])
@@ -138,6 +140,7 @@ def fig2(b1: Sequence[float] = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)) ->
     right.annotate("hand", (0, 0), xytext=(7, -3), textcoords="offset points")
     right.annotate("target", tuple(end), xytext=(9, 3), textcoords="offset points")
     right.set(title="Turned and scaled (Eq. 6)", xlabel="x [cm]", ylabel="y [cm]", aspect="equal")
+    right.set(xticks=(-10, -5, 0, 5, 10), yticks=(0, 5, 10, 15, 20))
     return figure
 
 
@@ -224,6 +227,8 @@ def _draw_sets(ax: Axes, sets: WeightSets) -> None:
 @_styled
 def learning_curves(comparison: Comparison) -> Figure:
     """Success on validation cases over the control steps simulated and over clock time."""
+    from matplotlib.ticker import NullFormatter
+
     figure, (left, right) = _axes((9.5, 4.2), 2, sharey=True)
     for result in comparison.results:
         colour = LINES.get(result.contender.key, INK)
@@ -240,6 +245,7 @@ def learning_curves(comparison: Comparison) -> Figure:
     for ax, label in ((left, "control steps simulated"), (right, "seconds of learning")):
         ax.axhline(PAPER["success"] / 1000, color=FAINT, lw=1, ls=":")
         ax.set(xscale="log", xlabel=label, ylim=(0, 1))
+        ax.xaxis.set_minor_formatter(NullFormatter())
         ax.grid(axis="y", color="#e4e7eb", lw=0.6)
     left.set_ylabel("success on validation cases")
     figure.legend(*right.get_legend_handles_labels(), loc="outside lower center", ncols=3)

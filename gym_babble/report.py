@@ -172,7 +172,8 @@ def _movement(comparison: Comparison) -> str:
     ]
     case = min(good or cases, key=_off_stage)
     loaded = LoadedAgent(trained.agent, trained.env_id, body, trained.env_kwargs)
-    film = record(loaded, options={"scenario": case}, size=360)
+    film = record(loaded, options={"scenario": case}, size=600)
+    near = [frame[120:480, 120:480] for frame in film.frames]  # The arm keeps to the middle.
     eye = record(loaded, options={"scenario": case}, camera="eye", size=630).frames[0]
     return (
         f"<h2>A movement</h2>\n<p>{escape(result.contender.title)} on case {case['index']}: "
@@ -181,7 +182,7 @@ def _movement(comparison: Comparison) -> str:
         + _figure(
             _png(png(eye)), "What the eye sees before: 630 × 630 pixels, 120°, on the target."
         )
-        + _figure(_png(png(contact_sheet(film.frames))), "The movement, from left to right.")
+        + _figure(_png(png(contact_sheet(near))), "The movement, row by row.")
         + "</div>\n"
     )
 

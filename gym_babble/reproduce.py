@@ -80,7 +80,8 @@ class TableOne:
 
 
 def _spread(values: Sequence[float]) -> dict[str, float | None]:
-    low, high = t_interval(values) or (None, None)
+    interval = t_interval(values)
+    low, high = (None, None) if interval is None else np.clip(interval, 0.0, 1.0).tolist()
     return {"mean": float(np.mean(values)), "low": low, "high": high}
 
 
@@ -109,7 +110,8 @@ def table1(
         agent = HebbBabbling(env, variant, seed=seed, quasi_static=quasi_static)
         agent.learn(movements, progress_bar=progress_bar)
         drawn = scenarios("table1", cases, seed, body=body)
-        tests.append(evaluate(agent, env_id, drawn, body=body))
+        bar = progress_bar and control != "pattern"  # There it takes but a moment.
+        tests.append(evaluate(agent, env_id, drawn, body=body, progress_bar=bar))
         legal_rates.append(agent.legal_rate)
     settings = {
         "body": str(body),

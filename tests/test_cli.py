@@ -203,7 +203,11 @@ def test_reproduce_figures(run, tmp_path, figure):
 
 @pytest.mark.parametrize(
     ("kind", "name", "begins"),
-    [("png", "frame0000.png", b"\x89PNG"), ("gif", "episode.gif", b"GIF8")],
+    [
+        ("png", "frame0000.png", b"\x89PNG"),
+        ("gif", "episode.gif", b"GIF8"),
+        ("mp4", "episode.mp4", b"\x00\x00\x00"),
+    ],
 )
 def test_render(run, tmp_path, kind, name, begins):
     words = ("--format", kind, "--size", 48, "--env-id", "BabbleReachPattern-v0")

@@ -21,7 +21,7 @@ from gym_babble._core import __version__
 from gym_babble.agents import HebbBabbling
 from gym_babble.compare import CONTENDERS, Settings
 from gym_babble.compare import compare as run_comparison
-from gym_babble.doctor import EXTRAS, examine
+from gym_babble.doctor import examine
 from gym_babble.errors import BabbleError, ConfigError, MissingExtraError
 from gym_babble.evaluation import evaluate as run_evaluation
 from gym_babble.film import record, save_film
@@ -29,7 +29,17 @@ from gym_babble.loading import check_env_id, load_agent
 from gym_babble.registration import ENVIRONMENTS
 from gym_babble.report import write_report
 from gym_babble.scenarios import scenarios
-from gym_babble.tables import OUTCOMES, paper_tally, plain_table, rate_cells, share, tally
+from gym_babble.tables import (
+    doctor_table,
+    info_tables,
+    paper_tally,
+    plain_table,
+    rate_cells,
+    rates_table,
+    share,
+    table1_table,
+    tally,
+)
 
 __all__ = ["app", "main"]
 
@@ -94,7 +104,7 @@ def list_environments(as_json: AsJson = False) -> None:
     for row in ENVIRONMENTS:
         steps = "1" if row.max_episode_steps is None else str(row.max_episode_steps)
         table.add_row(row.id, row.obs, row.control, row.reward, steps, f"{row.reward_threshold:g}")
-    out.print(table)
+    _print(table)
 
 
 @app.command()
@@ -123,22 +133,7 @@ def info(
     if as_json:
         _print_json(described)
     else:
-        _show_info(described)
-
-
-def _show_info(described: dict[str, Any]) -> None:
-    out.print(f"[bold]{described['id']}[/]")
-    for name in ("obs", "control", "reward", "max_episode_steps", "control_hz", "reward_threshold"):
-        out.print(f"  {name:18} {described[name]}", highlight=False)
-    for name in ("reward_terms", "outcomes"):
-        out.print(f"  {name:18} {', '.join(described[name])}", highlight=False)
-    for title, entries in (("senses", described["senses"]), ("action", [described["action"]])):
-        table = plain_table(title, ["name", "parts", "low", "high", "unit", "meaning"], left=6)
-        for entry in entries:
-            low, high = ("\n".join(f"{x:.4g}" for x in entry[end]) for end in ("low", "high"))
-            labels = "\n".join(entry["labels"])
-            table.add_row(entry["name"], labels, low, high, entry["unit"], entry["description"])
-        out.print(table)
+        _print(*info_tables(described))
 
 
 @app.command()
@@ -205,10 +200,10 @@ def evaluate(
             {"agent": agent, "env_id": loaded.env_id, "seed": seed, "split": split, **rates}
         )
         return
-    table = _rates_table(f"{cases:,} cases of Table I, 95 % Wilson intervals")
+    table = rates_table(f"{cases:,} cases of Table I, 95 % Wilson intervals")
     table.add_row(agent, *rate_cells(rates))
     table.add_row("the paper", *rate_cells(paper_tally()))
-    out.print(table)
+    _print(table)
 
 
 @app.command()
@@ -246,7 +241,7 @@ def compare(
     if as_json:
         _print_json(comparison.to_json())
     else:
-        out.print(comparison.table())
+        _print(comparison.table())
     _say(f"{comparison.seconds:.0f} s")
     _name_files(written)
 
@@ -282,31 +277,9 @@ def doctor(as_json: AsJson = False) -> None:
     if as_json:
         _print_json(found)
     else:
-        _show_doctor(found)
+        _print(doctor_table(found))
     if not found["same_bits"]:
         raise typer.Exit(1)
-
-
-def _show_doctor(found: dict[str, Any]) -> None:
-    table = plain_table(None, ["what", "found"], left=2)
-    for name, version in found["versions"].items():
-        table.add_row(name, version or "[dim]not installed[/]")
-    for extra, there in found["extras"].items():
-        missing = f"no: pip install 'gym-babble\\[{extra}]' brings {', '.join(EXTRAS[extra])}"
-        table.add_row(f"extra {extra}", "yes" if there else missing)
-    table.add_row("platform", found["platform"])
-    table.add_row("build", found["build"])
-    table.add_row("threads", str(found["threads"]))
-    expected = found["state_hash_expected"]
-    table.add_row(
-        "state after 20 steps of seed 0",
-        f"{found['state_hash']}: as it should be"
-        if found["same_bits"]
-        else f"[red]{found['state_hash']}, expected {expected}: rebuild with `make setup`[/]",
-    )
-    table.add_row("a step through gymnasium.make", f"{found['step_us']:.1f} µs")
-    table.add_row("a step in a batch of 64", f"{found['step_in_batch_of_64_us']:.1f} µs")
-    out.print(table)
 
 
 @reproduced.command("table1")
@@ -346,26 +319,9 @@ def reproduce_table1(
     if as_json:
         _print_json(document)
     else:
-        _show_table1(document, f"Table I: Hebb {variant}, body {body}, {control} control")
+        title = f"Table I: Hebb {variant}, body {body}, {control} control"
+        _print(table1_table(document, title))
     _name_files(files)
-
-
-def _show_table1(document: dict[str, Any], title: str) -> None:
-    table = _rates_table(title, "legal")
-    table.add_row("the paper", *rate_cells(document["paper"]), "≈.20")
-    for seed in document["by_seed"]:
-        table.add_row(f"seed {seed['seed']}", *rate_cells(seed), share(seed["legal_rate"]))
-    pooled = document["pooled"]
-    table.add_row("[bold]pooled[/]", *rate_cells(pooled), share(pooled["legal_rate"]))
-    spreads = document["over_seeds"]
-    if spreads["success"]["low"] is not None:
-        cells = [
-            f"{share(spreads[name]['mean'])}\n"
-            f"[dim]{share(spreads[name]['low'])}–{share(spreads[name]['high'])}[/]"
-            for name in (*OUTCOMES, "legal_rate")
-        ]
-        table.add_row("over seeds\n[dim]t interval[/]", *cells)
-    out.print(table)
 
 
 @reproduced.command("fig2")
@@ -434,10 +390,6 @@ def _learn(
     return agent.learn(movements, progress_bar=True)
 
 
-def _rates_table(title: str, *more: str) -> Any:
-    return plain_table(title, ["", "success", "collision", "joint limit", "timeout", *more])
-
-
 def _check_folder_of(path: Path) -> None:
     if not path.absolute().parent.is_dir():
         raise ConfigError(f"--out {path}: there is no folder {path.parent}; make it first")
@@ -447,6 +399,11 @@ def _check_picture(path: Path) -> None:
     """Finds what would fail after learning: a missing folder, extra or format."""
     _check_folder_of(path)
     figures.check_format(path)
+
+
+def _print(*parts: Any) -> None:
+    for part in parts:
+        out.print(part, highlight=False)
 
 
 def _print_json(document: Any) -> None:

@@ -16,7 +16,20 @@ if TYPE_CHECKING:
 
     from gym_babble.evaluation import Evaluation
 
-__all__ = ["OUTCOMES", "PAPER", "plain_table", "rate_cells", "share", "t_interval", "tally"]
+__all__ = [
+    "OUTCOMES",
+    "PAPER",
+    "doctor_table",
+    "info_tables",
+    "paper_tally",
+    "plain_table",
+    "rate_cells",
+    "rates_table",
+    "share",
+    "t_interval",
+    "table1_table",
+    "tally",
+]
 
 OUTCOMES = ("success", "collision", "joint_limit", "timeout")
 """How an episode of reaching can end; each has exactly one."""
@@ -73,10 +86,11 @@ def share(rate: float) -> str:
 
 def rate_cells(rates: dict[str, Any]) -> list[str]:
     """For each outcome of a `tally` a cell with the rate, and under it the interval."""
-    return [
-        f"{share(rates[name]['rate'])}\n[dim]{share(rates[name]['low'])}–{share(rates[name]['high'])}[/]"
-        for name in OUTCOMES
-    ]
+    return [f"{share(rates[name]['rate'])}\n{_interval(rates[name])}" for name in OUTCOMES]
+
+
+def _interval(rate: dict[str, Any]) -> str:
+    return f"[dim]{share(rate['low'])}–{share(rate['high'])}[/]"
 
 
 def plain_table(
@@ -98,4 +112,70 @@ def plain_table(
     )
     for i, column in enumerate(columns):
         table.add_column(column, justify="left" if i < left else "right", no_wrap=i == 0)
+    return table
+
+
+def rates_table(title: str, *more: str) -> Table:
+    """An empty table for `rate_cells`, and more columns."""
+    return plain_table(title, ["", "success", "collision", "joint limit", "timeout", *more])
+
+
+def table1_table(document: dict[str, Any], title: str) -> Table:
+    """`TableOne.to_json()` as a table: paper, seeds, pooled, and intervals over seeds."""
+    table = rates_table(title, "legal")
+    table.add_row("the paper", *rate_cells(document["paper"]), "≈.20")
+    for seed in document["by_seed"]:
+        table.add_row(f"seed {seed['seed']}", *rate_cells(seed), share(seed["legal_rate"]))
+    pooled = document["pooled"]
+    table.add_row("[bold]pooled[/]", *rate_cells(pooled), share(pooled["legal_rate"]))
+    spreads = document["over_seeds"]
+    if spreads["success"]["low"] is not None:
+        cells = [
+            f"{share(spreads[name]['mean'])}\n{_interval(spreads[name])}"
+            for name in (*OUTCOMES, "legal_rate")
+        ]
+        table.add_row("over seeds\n[dim]t interval[/]", *cells)
+    return table
+
+
+def info_tables(described: dict[str, Any]) -> list[Table]:
+    """An environment's choices and limits, its senses, and its action."""
+    facts = plain_table(described["id"], ["", ""], left=2)
+    facts.show_header = False
+    for name in ("obs", "control", "reward", "max_episode_steps", "control_hz", "reward_threshold"):
+        facts.add_row(name, str(described[name]))
+    for name in ("reward_terms", "outcomes"):
+        facts.add_row(name, ", ".join(described[name]))
+    senses, action = described["senses"], [described["action"]]
+    return [facts, _entries_table("senses", senses), _entries_table("action", action)]
+
+
+def _entries_table(title: str, entries: Sequence[dict[str, Any]]) -> Table:
+    heads = ["name", "parts", "low", "high", "unit", "meaning"]
+    table = plain_table(f"\n{title}", heads, left=len(heads))
+    for entry in entries:
+        low, high = ("\n".join(f"{x:.4g}" for x in entry[end]) for end in ("low", "high"))
+        labels = "\n".join(entry["labels"])
+        table.add_row(entry["name"], labels, low, high, entry["unit"], entry["description"])
+    return table
+
+
+def doctor_table(found: dict[str, Any]) -> Table:
+    """What `doctor.examine` found."""
+    table = plain_table(None, ["what", "found"], left=2)
+    for name, version in found["versions"].items():
+        table.add_row(name, version or "[dim]not installed[/]")
+    for extra, there in found["extras"].items():
+        table.add_row(
+            f"extra {extra}", "yes" if there else f"no: pip install 'gym-babble\\[{extra}]'"
+        )
+    for name in ("platform", "build", "threads"):
+        table.add_row(name, str(found[name]))
+    state = found["state_hash"]
+    told = f"{state}: as it should be"
+    if not found["same_bits"]:
+        told = f"[red]{state}, expected {found['state_hash_expected']}: `make setup` builds anew[/]"
+    table.add_row("state after 20 steps of seed 0", told)
+    table.add_row("a step through gymnasium.make", f"{found['step_us']:.1f} µs")
+    table.add_row("a step in a batch of 64", f"{found['step_in_batch_of_64_us']:.1f} µs")
     return table

@@ -1,6 +1,7 @@
 //! The one description of observations and actions. Spaces in Python, tables in the docs and every
 //! other face are made from it.
 
+use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use serde::Serialize;
@@ -19,8 +20,8 @@ pub struct Entry {
     pub low: Vec<f64>,
     /// Upper bounds.
     pub high: Vec<f64>,
-    /// Unit of the numbers.
-    pub unit: &'static str,
+    /// Unit of the numbers; for an action, what ±1 stands for.
+    pub unit: Cow<'static, str>,
     /// What the group tells.
     pub description: &'static str,
 }
@@ -50,7 +51,7 @@ pub fn spec(task: &ReachTask) -> Spec {
     Spec {
         senses: senses(task),
         goals: goals(task),
-        action: action(task.options.control),
+        action: action(task),
         reward_terms: reward_terms(task),
         outcomes: crate::options::Outcome::ALL
             .iter()
@@ -72,14 +73,15 @@ pub fn senses(task: &ReachTask) -> Vec<Entry> {
         Control::Torque => muscles.torque_max / muscles.kp,
         _ => arm.upper_limit[i] - arm.lower[i],
     });
-    let entry = |name, labels: [&'static str; 2], (low, high), unit, description| Entry {
-        name,
-        labels: labels.to_vec(),
-        low,
-        high,
-        unit,
-        description,
-    };
+    let entry =
+        |name, labels: [&'static str; 2], (low, high), unit: &'static str, description| Entry {
+            name,
+            labels: labels.to_vec(),
+            low,
+            high,
+            unit: unit.into(),
+            description,
+        };
     vec![
         entry(
             "eye",
@@ -121,7 +123,7 @@ pub fn senses(task: &ReachTask) -> Vec<Entry> {
             labels: vec!["elapsed"],
             low: vec![0.0],
             high: vec![1.0],
-            unit: "share of episode",
+            unit: "share of episode".into(),
             description: "control steps since the reset over the time limit",
         },
     ]
@@ -134,7 +136,7 @@ fn goals(task: &ReachTask) -> Vec<Entry> {
         labels: vec!["x", "y"],
         low: vec![-reach; 2],
         high: vec![reach; 2],
-        unit: "m",
+        unit: "m".into(),
         description,
     };
     vec![
@@ -143,26 +145,28 @@ fn goals(task: &ReachTask) -> Vec<Entry> {
     ]
 }
 
-fn action(control: Control) -> Entry {
-    let (labels, unit, description) = match control {
+fn action(task: &ReachTask) -> Entry {
+    let degrees = task.config.reach.delta_posture_deg;
+    let torque = task.config.body.muscles.torque_max;
+    let (labels, unit, description) = match task.options.control {
         Control::DeltaPosture => (
             vec!["shoulder", "elbow"],
-            "delta_posture_deg",
+            Cow::from(format!("{degrees} deg")),
             "change of the muscles' equilibrium points, clipped to the joint ranges",
         ),
         Control::Posture => (
             vec!["shoulder", "elbow"],
-            "half joint range",
+            Cow::from("half joint range"),
             "equilibrium points of the muscles, −1…1 over the joint ranges",
         ),
         Control::Torque => (
             vec!["shoulder", "elbow"],
-            "torque_max",
+            Cow::from(format!("{torque} N·m")),
             "joint torques on top of the muscles' damping: T = action · torque_max − K_D q̇",
         ),
         Control::Pattern => (
             vec!["b1", "b2"],
-            "b = ½ + action/2",
+            Cow::from("½, from b = ½"),
             "parameters of the pattern generators (Eq. 5); one step is one whole movement",
         ),
     };

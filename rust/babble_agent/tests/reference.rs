@@ -43,6 +43,32 @@ fn oracle_is_at_least_the_script() {
     }
 }
 
+/// The oracle's b1 is the middle of the values that succeed: as many succeed below it as above.
+/// Catches a value from the run's edge, which grazes the obstacle.
+#[test]
+fn oracle_keeps_away_from_the_edges() {
+    let task = task("paper");
+    let mut pool = Pool::new(2).unwrap();
+    let cases = protocol::table1(&task, 8, 1, Purpose::Validation, &mut pool).unwrap();
+    for case in cases {
+        let hundredths = 100.0 * oracle(&task, &case).unwrap()[0];
+        let succeeds = |k: f64| {
+            let inside = (1.0..=99.0).contains(&k);
+            inside && outcome(&task, &case, [k / 100.0, 1.0 - k / 100.0]) == Outcome::Success
+        };
+        let run = |from: f64, step: f64| {
+            let values = (0..100).map(|i| from + step * f64::from(i));
+            values.take_while(|&k| succeeds(k)).count()
+        };
+        let below = run((hundredths + 1e-6).floor(), -1.0);
+        let above = run((hundredths - 1e-6).ceil(), 1.0);
+        assert!(
+            below > 0 && below == above,
+            "{hundredths}: {below} below, {above} above"
+        );
+    }
+}
+
 /// The script bulges towards the shoulder, in any direction of the movement.
 /// Catches a mirrored side, which fails for one half of the directions alone.
 #[test]

@@ -93,6 +93,29 @@ fn thin_obstacle_is_not_passed_through() {
     assert!(wire.clearance(&arm, between(from, to, touch)).abs() < 1e-6);
 }
 
+/// A wire on the way of the fingertip of a thin, stretched arm: the motion for which the bound on
+/// the sweep is tight, to one part in a hundred. Catches a bound that is a little too small.
+#[test]
+fn touch_at_the_fingertip_is_not_pruned() {
+    let mut body = Body::paper();
+    body.arm.half_width_m = 1e-4;
+    let arm = PlanarArm::new(&body);
+    for turn in [0.05, 0.1, 0.2] {
+        let (from, to) = ([1.0, arm.lower[1]], [1.0 + turn, arm.lower[1]]);
+        let wire = Obstacle {
+            centre: arm.fingertip(between(from, to, 0.5)) * 0.9999,
+            radius: 1e-4,
+        };
+        let (before, after) = (wire.clearance(&arm, from), wire.clearance(&arm, to));
+        assert!(before + after > 0.95 * sweep(&arm, from, to));
+        let touch = wire.first_touch(&arm, from, to, before);
+        assert!(
+            touch.is_some_and(|share| (0.4..0.5).contains(&share)),
+            "{touch:?}"
+        );
+    }
+}
+
 proptest! {
     /// No point of the arm moves further than the sweep says. Catches a bound without the forearm's
     /// share of the shoulder's motion, or with the fingertip for the farthest point.

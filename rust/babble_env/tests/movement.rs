@@ -161,7 +161,15 @@ fn movements_end_where_they_fail() {
                     assert!(!legal);
                 }
                 Outcome::JointLimit => assert!(!whole && !legal),
-                _ => assert!(whole && legal && clearance > 0.0),
+                _ => {
+                    assert!(whole && legal && clearance > 0.0);
+                    // T = 8 s and four time constants of 0.8 s to settle.
+                    let lasts = match fidelity {
+                        Fidelity::Full => 8.0 + 4.0 * 0.8,
+                        Fidelity::QuasiStatic => 8.0,
+                    };
+                    assert!((movement.time_s - lasts).abs() < 1e-9);
+                }
             }
         }
     }

@@ -117,7 +117,7 @@ class Cylinder:
 
     radius_m: float = 0.035
     """Radius [m] [F]; 0.02 [C] in profile "icub"."""
-    height_m: float = 0.3
+    height_m: float = 0.12
     """Height [m], half of it above the arm's plane [C]."""
 
 

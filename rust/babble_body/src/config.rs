@@ -58,7 +58,7 @@ pub struct Muscles {
 pub struct Cylinder {
     /// Radius \[m\]; 0.035 \[F\] (body `icub`: 0.02 \[C\]).
     pub radius_m: f64,
-    /// Height \[m\], half of it above the arm's plane; 0.3 \[C\].
+    /// Height \[m\], half of it above the arm's plane; 0.12 \[C\].
     pub height_m: f64,
 }
 
@@ -118,7 +118,7 @@ impl Body {
             eye: EyeConfig::helmholtz(),
             obstacle: Cylinder {
                 radius_m: 0.035,
-                height_m: 0.3,
+                height_m: 0.12,
             },
             target: Target { radius_m: 0.012 },
         }
@@ -133,7 +133,7 @@ impl Body {
             eye: EyeConfig::fick(),
             obstacle: Cylinder {
                 radius_m: 0.02,
-                height_m: 0.3,
+                height_m: 0.12,
             },
             ..Self::paper()
         }

@@ -14,7 +14,7 @@ pub struct Pool {
 }
 
 impl Pool {
-    /// A pool of `threads` threads; with 1 everything runs on the caller's thread.
+    /// A pool of `threads` threads.
     ///
     /// # Errors
     /// [`EnvError::OutOfBounds`] for no threads or more than 1024.

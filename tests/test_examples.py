@@ -25,7 +25,7 @@ RUNS = {
         "--seeds 1 --cases 20 --movements 50",
         r"\| 2,000 movements( \| \d\.\d{3}){4} \|",
     ),
-    "sac_her.py": ("--steps 2400 --cases 20", r"success 0\.\d+ \[0\.\d+, .+\]"),
+    "sac_her.py": ("--steps 4000 --cases 20", r"success 0\.\d+ \[0\.\d+, .+\]"),
 }
 ELSEWHERE = {"rllib_ppo.py"}
 """Has its own environment: `make rllib`."""

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Film", "contact_sheet", "png", "record", "save_film"]
 
+# White between the pictures of a contact sheet [pixel].
+GAP = 6
+
 
 @dataclass(frozen=True)
 class Film:
@@ -69,10 +72,13 @@ def contact_sheet(
 ) -> NDArray[np.uint8]:
     """Frames spread evenly over an episode, from its first to its last, as one picture."""
     chosen = np.linspace(0, len(frames) - 1, columns * rows).round().astype(int)
-    grid = [frames[i] for i in chosen]
-    return np.concatenate(
-        [np.concatenate(grid[r * columns : (r + 1) * columns], axis=1) for r in range(rows)]
-    )
+    height, width, _ = frames[0].shape
+    down, right = height + GAP, width + GAP
+    sheet = np.full((rows * down - GAP, columns * right - GAP, 3), 255, np.uint8)
+    for k, i in enumerate(chosen.tolist()):
+        top, left = k // columns * down, k % columns * right
+        sheet[top : top + height, left : left + width] = frames[i]
+    return sheet
 
 
 def save_film(film: Film, folder: Path, kind: str) -> list[Path]:

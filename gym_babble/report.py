@@ -173,7 +173,7 @@ def _movement(comparison: Comparison) -> str:
     case = min(good or cases, key=_off_stage)
     loaded = LoadedAgent(trained.agent, trained.env_id, body, trained.env_kwargs)
     film = record(loaded, options={"scenario": case}, size=600)
-    near = [frame[120:480, 120:480] for frame in film.frames]  # The arm keeps to the middle.
+    near = [frame[60:400, 80:420] for frame in film.frames]  # The arm keeps to the middle.
     eye = record(loaded, options={"scenario": case}, camera="eye", size=630).frames[0]
     return (
         f"<h2>A movement</h2>\n<p>{escape(result.contender.title)} on case {case['index']}: "

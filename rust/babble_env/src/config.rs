@@ -232,8 +232,9 @@ fn merge(base: &mut Value, overrides: Value, path: &mut Vec<String>) -> Result<(
         path.push(key.clone());
         match base.get_mut(key) {
             Some(slot) => merge(slot, value.clone(), path)?,
-            // Optional fields and joints are checked by name when the whole is read.
-            None if path.first().is_some_and(|first| first == "body") && path.len() > 2 => {
+            // A joint's lock is there only where it has one; its fields are checked when the whole
+            // is read.
+            None if path.len() == 4 && path[1] == "joints" => {
                 base.insert(key.clone(), value.clone());
             }
             None => {

@@ -8,7 +8,7 @@ from scipy import stats
 from gym_babble import HebbBabbling, Scripted, figures, scenarios
 from gym_babble.compare import Settings, compare
 from gym_babble.errors import ConfigError
-from gym_babble.film import contact_sheet
+from gym_babble.film import GAP, contact_sheet
 from gym_babble.reproduce import starts_without_case, switched, ways, weight_sets
 from gym_babble.tables import share, t_interval
 
@@ -133,7 +133,8 @@ def test_saved_figures_are_pictures_with_ink(tmp_path, hebb):
 def test_a_contact_sheet_begins_and_ends_with_the_film():
     frames = [np.full((4, 4, 3), i, np.uint8) for i in range(30)]
     sheet = contact_sheet(frames)
-    assert sheet.shape == (8, 12, 3)
+    assert sheet.shape == (2 * 4 + GAP, 3 * 4 + 2 * GAP, 3)
+    assert (sheet[4 : 4 + GAP] == 255).all()
     assert sheet[0, 0, 0] == 0
     assert sheet[-1, -1, 0] == 29
 

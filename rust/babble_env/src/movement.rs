@@ -96,46 +96,35 @@ impl MovementPath {
         let period = task.config.reach.control_period_s;
         let mut arm = ArmState::at_rest(case.start);
         let mut watch = task.watch(case.obstacle, arm.q);
-        for (k, &q_des) in self.postures.iter().enumerate() {
-            if task.advance(&mut arm, &mut watch, |state, dt| {
+        let last = self.postures.last().copied().unwrap_or(case.start);
+        let settling = if self.violates {
+            0
+        } else {
+            task.settle_steps()
+        };
+        let held = std::iter::repeat_n(last, settling);
+        for (k, q_des) in self.postures.iter().copied().chain(held).enumerate() {
+            let touched = task.advance(&mut arm, &mut watch, |state, dt| {
                 task.dynamics.step(state, q_des, dt)
-            }) {
-                each(&arm);
-                return Movement {
-                    outcome: Outcome::Collision,
-                    time_s: (k + 1) as f64 * period,
-                    arm,
-                };
-            }
+            });
             each(&arm);
-        }
-        let moved_s = self.postures.len() as f64 * period;
-        if self.violates {
-            return Movement {
-                outcome: Outcome::JointLimit,
-                time_s: moved_s,
-                arm,
-            };
-        }
-        let q_des = self.postures.last().copied().unwrap_or(case.start);
-        let settle = task.settle_steps();
-        for k in 0..settle {
-            if task.advance(&mut arm, &mut watch, |state, dt| {
-                task.dynamics.step(state, q_des, dt)
-            }) {
-                each(&arm);
-                let time_s = moved_s + (k + 1) as f64 * period;
+            if touched {
+                let time_s = (k + 1) as f64 * period;
                 return Movement {
                     outcome: Outcome::Collision,
                     time_s,
                     arm,
                 };
             }
-            each(&arm);
         }
-        let time_s = moved_s + settle as f64 * period;
+        let time_s = (self.postures.len() + settling) as f64 * period;
+        let outcome = if self.violates {
+            Outcome::JointLimit
+        } else {
+            task.end_of_movement(case, arm.q)
+        };
         Movement {
-            outcome: task.end_of_movement(case, arm.q),
+            outcome,
             time_s,
             arm,
         }

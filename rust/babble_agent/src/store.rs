@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 
 use babble_env::Config;
-use babble_env::movement::Fidelity;
+use babble_env::reach::movement::Fidelity;
 use safetensors::tensor::{Dtype, TensorView};
 use safetensors::{SafeTensors, serialize};
 use serde::{Deserialize, Serialize};

@@ -1,10 +1,9 @@
 //! Babbling and learning: what they depend on, and that they learn.
 
 use babble_agent::{AgentError, Babbling, Experience, Hebb, HebbConfig, Variant};
-use babble_env::movement::{Fidelity, MovementPath};
-use babble_env::{
-    Config, Control, Options, Outcome, Pool, Purpose, ReachCase, ReachTask, protocol,
-};
+use babble_env::reach::movement::{Fidelity, MovementPath};
+use babble_env::reach::protocol;
+use babble_env::{Config, Control, Options, Outcome, Pool, Purpose, ReachCase, ReachTask};
 
 fn task() -> ReachTask {
     let options = Options {

@@ -1,11 +1,11 @@
 //! The agents that need no learning.
 
 use babble_agent::reference::{case_from_senses, oracle, plan, scripted};
-use babble_env::case::{CaseRequest, ObstacleRequest};
-use babble_env::movement::{Fidelity, MovementPath};
+use babble_env::reach::case::{CaseRequest, ObstacleRequest};
+use babble_env::reach::movement::{Fidelity, MovementPath};
+use babble_env::reach::protocol;
 use babble_env::{
     Autoreset, Batch, Config, Control, Options, Outcome, Pool, Purpose, ReachCase, ReachTask,
-    protocol,
 };
 
 fn task(profile: &str) -> ReachTask {
@@ -111,8 +111,9 @@ fn senses_tell_the_case() {
             }
             env.reset(&[true; 40]).unwrap();
             for (i, record) in env.records().enumerate() {
-                let told = case_from_senses(env.task(), &record.senses).unwrap();
-                let case = env.env(i).unwrap().state().case;
+                let told =
+                    case_from_senses(env.task(), record.senses.first_chunk().unwrap()).unwrap();
+                let case = env.state(i).unwrap().case;
                 let near = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) < 1e-3;
                 assert!(near(told.hand, case.hand) && near(told.target, case.target));
                 match (told.obstacle, case.obstacle) {

@@ -4,8 +4,8 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 use babble_env::batch::Batch;
-use babble_env::case::{CaseRequest, ObstacleRequest};
-use babble_env::movement::{Fidelity, MovementPath};
+use babble_env::reach::case::{CaseRequest, ObstacleRequest};
+use babble_env::reach::movement::{Fidelity, MovementPath};
 use babble_env::{Autoreset, Config, Control, Options, Purpose, ReachCase, ReachTask, Stream};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
@@ -20,7 +20,7 @@ fn task(control: Control) -> Arc<ReachTask> {
     Arc::new(ReachTask::new(Config::profile("paper").unwrap(), options).unwrap())
 }
 
-fn batch(control: Control, n: usize, threads: usize) -> Batch {
+fn batch(control: Control, n: usize, threads: usize) -> Batch<ReachTask> {
     let mut batch = Batch::new(task(control), n, Autoreset::NextStep, threads).unwrap();
     batch.reset(&vec![true; n]).unwrap();
     batch
@@ -102,7 +102,7 @@ fn movements(c: &mut Criterion) {
 fn resets(c: &mut Criterion) {
     let mut env = batch(Control::DeltaPosture, 1, 1);
     let task = env.task().clone();
-    let case = env.env(0).unwrap().state().case;
+    let case = env.state(0).unwrap().case;
     let request = CaseRequest {
         start: Some(case.hand),
         target: Some(case.target),

@@ -1,18 +1,16 @@
 //! n episodes stepped together. A single environment is a batch of one.
 
+use std::fmt;
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use crate::case::CaseRequest;
 use crate::choice::named_enum;
 use crate::error::EnvError;
-use crate::options::Outcome;
 use crate::pool::Pool;
-use crate::reach::{Phase, Reach, ReachState, SENSES, Step};
 use crate::snapshot;
 use crate::stream::{Purpose, Stream};
-use crate::task::ReachTask;
+use crate::task::{Episode, Phase, Request, Standing, State, Step, Task};
 
 named_enum!(
     /// When an ended episode begins anew.
@@ -26,75 +24,78 @@ named_enum!(
 );
 
 /// What an environment shows after a reset or a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     /// Flat observation.
-    pub senses: [f32; SENSES],
-    /// Fingertip \[m\].
-    pub achieved: [f32; 2],
-    /// Target \[m\].
-    pub desired: [f32; 2],
+    pub senses: Vec<f32>,
+    /// What it shows beside.
+    pub standing: Standing,
     /// Reward and end.
     pub step: Step,
-    /// How the episode stands.
-    pub outcome: Outcome,
-    /// Whether the fingertip is at the target now.
-    pub is_success: bool,
-    /// Whether it ever was.
-    pub ever_success: bool,
 }
 
 impl Record {
-    fn of(task: &ReachTask, env: &Reach, step: Step) -> Self {
-        let state = env.state();
-        let mut record = Self {
-            senses: [0.0; SENSES],
-            achieved: env.fingertip(task).map(|x| x as f32),
-            desired: state.case.target.map(|x| x as f32),
-            step,
-            outcome: state.outcome,
-            is_success: state.is_success,
-            ever_success: state.ever_success,
-        };
-        env.observe(task, &mut record.senses);
-        record
+    fn of<T: Task>(task: &T, env: &T::Episode) -> Self {
+        let mut senses = vec![0.0; task.senses_len()];
+        env.observe(task, &mut senses);
+        Self {
+            senses,
+            standing: env.standing(task),
+            step: Step::default(),
+        }
+    }
+
+    /// Shows `env` after `step`, in the same memory.
+    fn update<T: Task>(&mut self, task: &T, env: &T::Episode, step: Step) {
+        env.observe(task, &mut self.senses);
+        self.standing = env.standing(task);
+        self.step = step;
     }
 }
 
 /// One environment and what it last showed.
-#[derive(Debug, Clone)]
-struct Slot {
-    env: Reach,
+struct Slot<T: Task> {
+    env: T::Episode,
     record: Record,
     /// The episode that a same-step reset replaced.
-    last: Option<Last>,
+    last: Option<Last<State<T>>>,
 }
 
 /// An episode at its end.
 #[derive(Debug, Clone)]
-pub struct Last {
+pub struct Last<S> {
     /// What it showed last.
     pub record: Record,
     /// Its state.
-    pub state: ReachState,
+    pub state: S,
 }
 
 /// n environments.
-#[derive(Debug, Clone)]
-pub struct Batch {
-    task: Arc<ReachTask>,
-    slots: Vec<Slot>,
+pub struct Batch<T: Task> {
+    task: Arc<T>,
+    slots: Vec<Slot<T>>,
     autoreset: Autoreset,
     pool: Pool,
 }
 
-impl Batch {
+/// Without the episodes, which may be large.
+impl<T: Task> fmt::Debug for Batch<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Batch")
+            .field("task", &T::NAME)
+            .field("len", &self.len())
+            .field("autoreset", &self.autoreset)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<T: Task> Batch<T> {
     /// `n` environments that have to be reset before they can step.
     ///
     /// # Errors
     /// [`EnvError::OutOfBounds`] for no environments, or no threads.
     pub fn new(
-        task: Arc<ReachTask>,
+        task: Arc<T>,
         n: usize,
         autoreset: Autoreset,
         threads: usize,
@@ -107,12 +108,8 @@ impl Batch {
             });
         }
         let slot = |i: usize| {
-            let env = Reach::new(&task, Stream::new(Purpose::Environment, 0, i as u64));
-            Slot {
-                record: Record::of(&task, &env, Step::default()),
-                env,
-                last: None,
-            }
+            let stream = Stream::new(Purpose::Environment, 0, i as u64);
+            Slot::new(&*task, T::Episode::new(&task, stream))
         };
         let slots = (0..n).map(slot).collect();
         Ok(Self {
@@ -125,7 +122,7 @@ impl Batch {
 
     /// The task they share.
     #[must_use]
-    pub fn task(&self) -> &Arc<ReachTask> {
+    pub fn task(&self) -> &Arc<T> {
         &self.task
     }
 
@@ -156,18 +153,18 @@ impl Batch {
     /// The episode that ended within the last step, of each environment that a same-step reset began
     /// anew.
     #[must_use]
-    pub fn last(&self) -> impl ExactSizeIterator<Item = Option<&Last>> {
+    pub fn last(&self) -> impl ExactSizeIterator<Item = Option<&Last<State<T>>>> {
         self.slots.iter().map(|slot| slot.last.as_ref())
     }
 
-    /// The episode of environment `i`.
+    /// The state of environment `i`.
     ///
     /// # Errors
     /// [`EnvError::OutOfBounds`] if there is no such environment.
-    pub fn env(&self, i: usize) -> Result<&Reach, EnvError> {
+    pub fn state(&self, i: usize) -> Result<&State<T>, EnvError> {
         self.slots
             .get(i)
-            .map(|slot| &slot.env)
+            .map(|slot| slot.env.state())
             .ok_or_else(|| no_such_env(i, self.slots.len()))
     }
 
@@ -186,7 +183,7 @@ impl Batch {
     ///
     /// # Errors
     /// [`EnvError::OutOfBounds`] if there is no such environment.
-    pub fn request(&mut self, i: usize, request: CaseRequest) -> Result<(), EnvError> {
+    pub fn request(&mut self, i: usize, request: Request<T>) -> Result<(), EnvError> {
         self.slot(i)?.env.request(request);
         Ok(())
     }
@@ -196,9 +193,10 @@ impl Batch {
     /// # Errors
     /// The first error in the order of the environments, after which all of them are as they were.
     pub fn reset(&mut self, mask: &[bool]) -> Result<(), EnvError> {
-        let task = &self.task;
-        let draw =
-            |(slot, &chosen): (&mut Slot, &bool)| chosen.then(|| slot.env.draw(task)).transpose();
+        let task = &*self.task;
+        let draw = |(slot, &chosen): (&mut Slot<T>, &bool)| {
+            chosen.then(|| slot.env.draw(task)).transpose()
+        };
         let slots = &mut self.slots;
         // All are drawn, also after an error, as each forgets what it was asked.
         let drawn: Vec<_> = if self.pool.threads() == 1 {
@@ -216,35 +214,35 @@ impl Batch {
         for (slot, drawn) in self.slots.iter_mut().zip(drawn) {
             slot.last = None;
             if let Some(drawn) = drawn {
-                slot.env.begin(task, drawn);
-                slot.record = Record::of(task, &slot.env, Step::default());
+                slot.begin(task, drawn);
             }
         }
         Ok(())
     }
 
-    /// One step of every environment; `actions` holds two numbers for each.
+    /// One step of every environment; `actions` holds those of the first, then of the second …
     ///
     /// # Errors
     /// [`EnvError::ActionShape`], [`EnvError::ActionNotFinite`] or [`EnvError::NeedsReset`], after
     /// which nothing was stepped; or the error of an automatic reset.
     pub fn step(&mut self, actions: &[f32]) -> Result<(), EnvError> {
         self.check(actions)?;
-        let (task, autoreset) = (&self.task, self.autoreset);
-        let step = |(slot, action): (&mut Slot, &[f32])| slot.step(task, action, autoreset);
+        let (task, autoreset) = (&*self.task, self.autoreset);
+        let width = task.action_len();
+        let step = |(slot, action): (&mut Slot<T>, &[f32])| slot.step(task, action, autoreset);
         let slots = &mut self.slots;
         if self.pool.threads() == 1 {
             return slots
                 .iter_mut()
-                .zip(actions.chunks_exact(2))
+                .zip(actions.chunks_exact(width))
                 .map(step)
                 .fold(Ok(()), Result::and);
         }
         let results: Vec<_> = self.pool.run(|| {
             slots
                 .par_iter_mut()
-                .with_min_len(8)
-                .zip(actions.par_chunks_exact(2))
+                .with_min_len(T::MIN_PER_THREAD)
+                .zip(actions.par_chunks_exact(width))
                 .map(step)
                 .collect()
         })?;
@@ -252,7 +250,8 @@ impl Batch {
     }
 
     fn check(&self, actions: &[f32]) -> Result<(), EnvError> {
-        let expected = 2 * self.slots.len();
+        let width = self.task.action_len();
+        let expected = width * self.slots.len();
         if actions.len() != expected {
             return Err(EnvError::ActionShape {
                 got: actions.len(),
@@ -261,12 +260,12 @@ impl Batch {
         }
         if let Some(at) = actions.iter().position(|a| !a.is_finite()) {
             return Err(EnvError::ActionNotFinite {
-                env: at / 2,
-                index: at % 2,
+                env: at / width,
+                index: at % width,
                 value: actions[at],
             });
         }
-        let ready = |slot: &Slot| match slot.env.state().phase {
+        let ready = |slot: &Slot<T>| match slot.env.phase() {
             Phase::Running => true,
             Phase::Ended => self.autoreset == Autoreset::NextStep,
             Phase::Fresh => false,
@@ -282,7 +281,7 @@ impl Batch {
     /// # Errors
     /// [`EnvError::OutOfBounds`] if there is no such environment.
     pub fn save(&self, i: usize) -> Result<Vec<u8>, EnvError> {
-        snapshot::save(&self.task, self.env(i)?.state())
+        snapshot::save(&*self.task, self.state(i)?)
     }
 
     /// Continues environment `i` from bytes.
@@ -290,51 +289,53 @@ impl Batch {
     /// # Errors
     /// [`EnvError::Snapshot`], after which the environment is as it was.
     pub fn load(&mut self, i: usize, bytes: &[u8]) -> Result<(), EnvError> {
-        let state = snapshot::load(&self.task, bytes)?;
-        let env = Reach::from_state(&self.task, state);
-        let record = Record::of(&self.task, &env, Step::default());
-        *self.slot(i)? = Slot {
-            env,
-            record,
-            last: None,
-        };
+        let task = &*self.task;
+        let state = snapshot::load(task, bytes)?;
+        let slot = Slot::new(task, T::Episode::from_state(task, state));
+        *self.slot(i)? = slot;
         Ok(())
     }
 
-    fn slot(&mut self, i: usize) -> Result<&mut Slot, EnvError> {
+    fn slot(&mut self, i: usize) -> Result<&mut Slot<T>, EnvError> {
         let n = self.slots.len();
         self.slots.get_mut(i).ok_or_else(|| no_such_env(i, n))
     }
 }
 
-impl Slot {
-    fn reset(&mut self, task: &ReachTask) -> Result<(), EnvError> {
-        self.env.reset(task)?;
-        self.record = Record::of(task, &self.env, Step::default());
+impl<T: Task> Slot<T> {
+    fn new(task: &T, env: T::Episode) -> Self {
+        Self {
+            record: Record::of(task, &env),
+            env,
+            last: None,
+        }
+    }
+
+    fn begin(&mut self, task: &T, drawn: <T::Episode as Episode>::Drawn) {
+        self.env.begin(task, drawn);
+        self.record.update(task, &self.env, Step::default());
+    }
+
+    fn reset(&mut self, task: &T) -> Result<(), EnvError> {
+        let drawn = self.env.draw(task)?;
+        self.begin(task, drawn);
         Ok(())
     }
 
-    fn step(
-        &mut self,
-        task: &ReachTask,
-        action: &[f32],
-        autoreset: Autoreset,
-    ) -> Result<(), EnvError> {
+    fn step(&mut self, task: &T, action: &[f32], autoreset: Autoreset) -> Result<(), EnvError> {
         self.last = None;
-        if self.env.state().phase == Phase::Ended {
+        if self.env.phase() == Phase::Ended {
             return self.reset(task);
         }
         let step = self.env.step(task, action)?;
-        let record = Record::of(task, &self.env, step);
+        self.record.update(task, &self.env, step);
         if autoreset == Autoreset::SameStep && (step.terminated || step.truncated) {
             self.last = Some(Last {
-                record,
+                record: self.record.clone(),
                 state: self.env.state().clone(),
             });
             self.reset(task)?;
             self.record.step = step;
-        } else {
-            self.record = record;
         }
         Ok(())
     }

@@ -1,15 +1,12 @@
 #![doc = include_str!("../README.md")]
 
 pub mod batch;
-pub mod case;
 mod choice;
 pub mod config;
 mod error;
-pub mod movement;
-pub mod options;
+mod outcome;
 pub mod picture;
 mod pool;
-pub mod protocol;
 pub mod reach;
 pub mod snapshot;
 pub mod spec;
@@ -17,12 +14,10 @@ pub mod stream;
 pub mod task;
 
 pub use batch::{Autoreset, Batch};
-pub use case::ReachCase;
 pub use config::Config;
 pub use error::EnvError;
-pub use movement::{Movement, MovementPath};
-pub use options::{Control, Options, Outcome, Reward};
+pub use outcome::Outcome;
 pub use pool::Pool;
-pub use reach::Reach;
+pub use reach::{Control, Movement, MovementPath, Options, ReachCase, ReachTask, Reward};
 pub use stream::{Purpose, Stream};
-pub use task::ReachTask;
+pub use task::Task;

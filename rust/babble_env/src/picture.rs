@@ -1,16 +1,13 @@
-//! What the eye, and a person, sees of an episode.
+//! What the eye, and a person, sees of an episode of any task.
 
-use babble_body::eye::{Gaze, Pinhole, Primitive, is_red, render_rgb, render_smooth, third_person};
-use babble_body::pose;
+use babble_body::eye::{
+    Eye, Gaze, Pinhole, Primitive, is_red, render_rgb, render_smooth, third_person,
+};
 use image::RgbImage;
 use image::imageops::thumbnail;
-use nalgebra::Vector2;
 
-use crate::case::ReachCase;
 use crate::choice::named_enum;
 use crate::error::EnvError;
-use crate::reach::ReachState;
-use crate::task::ReachTask;
 
 named_enum!(
     /// Where a picture is taken from.
@@ -28,54 +25,65 @@ const EDGE: std::ops::RangeInclusive<u32> = 16..=4096;
 /// pixel is the mean of several rays.
 const EYE_RAYS: u32 = 160;
 
-/// A picture of an episode.
-///
-/// `frame` picks a moment of the recorded trail; none is now.
-///
-/// # Errors
-/// [`EnvError::OutOfBounds`] for an edge or frame that is out of bounds.
-pub fn picture(
-    task: &ReachTask,
-    state: &ReachState,
-    view: View,
-    [width, height]: [u32; 2],
-    frame: Option<usize>,
-) -> Result<RgbImage, EnvError> {
-    for (option, edge) in [("width", width), ("height", height)] {
-        if !EDGE.contains(&edge) {
-            return Err(EnvError::OutOfBounds {
-                option,
-                value: edge.to_string(),
-                bound: format!("in [{}, {}] pixels", EDGE.start(), EDGE.end()),
-            });
-        }
-    }
-    let (q, trail) = moment(state, frame)?;
-    let scene = scene(task, &state.case, state.gaze, q, trail, view);
-    Ok(match view {
-        View::ThirdPerson => render_smooth(&scene, &third_person(width as usize, height as usize)),
-        View::Eye => {
-            let edge = width.min(height);
-            let rays = EYE_RAYS.div_ceil(edge);
-            let camera = task
-                .eye
-                .camera_sized(state.gaze, (edge * rays) as usize)
-                .middle((width * rays) as usize, (height * rays) as usize);
-            let mut image = render_rgb(&scene, &camera);
-            draw_target_on_top(&mut image, &scene[..1], &camera);
-            if rays == 1 {
-                image
-            } else {
-                thumbnail(&image, width, height)
-            }
-        }
-    })
+/// What there is to see.
+#[derive(Debug)]
+pub(crate) struct Scene<'a> {
+    /// All of it.
+    pub(crate) things: &'a [Primitive],
+    /// What nothing hides from the eye, where it is red.
+    pub(crate) on_top: &'a [Primitive],
+    /// The eye that looks at it.
+    pub(crate) eye: &'a Eye,
+    /// Where it looks.
+    pub(crate) gaze: Gaze,
 }
 
-/// Nothing hides the target from the eye, so that an image's red pixels are those that its reflex
-/// saw ([`ReachTask::foveate`]).
-fn draw_target_on_top(image: &mut RgbImage, target: &[Primitive], camera: &Pinhole) {
-    let alone = render_rgb(target, camera);
+impl Scene<'_> {
+    /// A picture (width, height).
+    ///
+    /// # Errors
+    /// [`EnvError::OutOfBounds`] for an edge that is out of bounds.
+    pub(crate) fn picture(
+        &self,
+        view: View,
+        [width, height]: [u32; 2],
+    ) -> Result<RgbImage, EnvError> {
+        for (option, edge) in [("width", width), ("height", height)] {
+            if !EDGE.contains(&edge) {
+                return Err(EnvError::OutOfBounds {
+                    option,
+                    value: edge.to_string(),
+                    bound: format!("in [{}, {}] pixels", EDGE.start(), EDGE.end()),
+                });
+            }
+        }
+        Ok(match view {
+            View::ThirdPerson => {
+                render_smooth(self.things, &third_person(width as usize, height as usize))
+            }
+            View::Eye => self.through_the_eye(width, height),
+        })
+    }
+
+    fn through_the_eye(&self, width: u32, height: u32) -> RgbImage {
+        let edge = width.min(height);
+        let rays = EYE_RAYS.div_ceil(edge);
+        let camera = self
+            .eye
+            .camera_sized(self.gaze, (edge * rays) as usize)
+            .middle((width * rays) as usize, (height * rays) as usize);
+        let mut image = render_rgb(self.things, &camera);
+        draw_red_on_top(&mut image, self.on_top, &camera);
+        if rays == 1 {
+            image
+        } else {
+            thumbnail(&image, width, height)
+        }
+    }
+}
+
+fn draw_red_on_top(image: &mut RgbImage, things: &[Primitive], camera: &Pinhole) {
+    let alone = render_rgb(things, camera);
     for (pixel, red) in image
         .pixels_mut()
         .zip(alone.pixels())
@@ -85,41 +93,11 @@ fn draw_target_on_top(image: &mut RgbImage, target: &[Primitive], camera: &Pinho
     }
 }
 
-fn moment(state: &ReachState, frame: Option<usize>) -> Result<([f64; 2], &[[f64; 2]]), EnvError> {
-    let Some(frame) = frame else {
-        return Ok((state.arm.q, &state.trail));
-    };
-    let q = state
-        .trail
-        .get(frame)
-        .ok_or_else(|| EnvError::OutOfBounds {
-            option: "frame",
-            value: frame.to_string(),
-            bound: format!("below {}", state.trail.len()),
-        })?;
-    Ok((*q, &state.trail[..=frame]))
-}
-
-fn scene(
-    task: &ReachTask,
-    case: &ReachCase,
-    gaze: Gaze,
-    q: [f64; 2],
-    trail: &[[f64; 2]],
-    view: View,
-) -> Vec<Primitive> {
-    let body = &task.config.body;
-    let mut scene = vec![pose::target(body, case.target)];
-    if let Some(obstacle) = &case.obstacle {
-        scene.push(pose::obstacle(body, obstacle));
+/// The error for a moment that was not recorded.
+pub(crate) fn no_such_frame(frame: usize, moments: usize) -> EnvError {
+    EnvError::OutOfBounds {
+        option: "frame",
+        value: frame.to_string(),
+        bound: format!("below {moments}"),
     }
-    pose::push_robot(&mut scene, body, q);
-    if view == View::ThirdPerson {
-        let tips: Vec<Vector2<f64>> = trail.iter().map(|&q| task.arm.fingertip(q)).collect();
-        pose::push_trail(&mut scene, &tips);
-        pose::push_surroundings(&mut scene, body, gaze, &task.eye);
-    } else {
-        scene.push(pose::ground(-body.obstacle.height_m / 2.0));
-    }
-    scene
 }

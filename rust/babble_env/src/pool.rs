@@ -65,12 +65,3 @@ impl Pool {
         }
     }
 }
-
-impl Clone for Pool {
-    fn clone(&self) -> Self {
-        Self {
-            threads: self.threads,
-            started: None,
-        }
-    }
-}

@@ -4,18 +4,15 @@ use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::error::EnvError;
-use crate::options::Options;
-use crate::reach::ReachState;
-use crate::task::ReachTask;
+use crate::task::{State, Task};
 
-const MAGIC: [u8; 4] = *b"BBRS";
 const VERSION: u16 = 1;
 
 #[derive(Serialize, Deserialize)]
 struct Header {
     magic: [u8; 4],
     version: u16,
-    /// A snapshot continues only under the config and options it was taken under.
+    /// Hash of the task's fingerprint.
     task: u64,
     /// Hash of the state's bytes.
     body: u64,
@@ -25,10 +22,10 @@ struct Header {
 ///
 /// # Errors
 /// Never for a state of this crate; the serializer's signature has it.
-pub fn save(task: &ReachTask, state: &ReachState) -> Result<Vec<u8>, EnvError> {
+pub fn save<T: Task>(task: &T, state: &State<T>) -> Result<Vec<u8>, EnvError> {
     let body = postcard::to_stdvec(state).map_err(|error| problem(&error))?;
     let header = Header {
-        magic: MAGIC,
+        magic: T::MAGIC,
         version: VERSION,
         task: fingerprint(task)?,
         body: xxh3_64(&body),
@@ -43,13 +40,14 @@ pub fn save(task: &ReachTask, state: &ReachState) -> Result<Vec<u8>, EnvError> {
 /// # Errors
 /// [`EnvError::Snapshot`] for bytes that are cut short, altered, of another version, or of an
 /// environment with another config or other options.
-pub fn load(task: &ReachTask, bytes: &[u8]) -> Result<ReachState, EnvError> {
+pub fn load<T: Task>(task: &T, bytes: &[u8]) -> Result<State<T>, EnvError> {
     let (header, body): (Header, &[u8]) =
         postcard::take_from_bytes(bytes).map_err(|error| problem(&error))?;
-    if header.magic != MAGIC {
-        return Err(refused(
-            "these bytes are not a snapshot of a reaching environment",
-        ));
+    if header.magic != T::MAGIC {
+        return Err(refused(&format!(
+            "these bytes are not a snapshot of a {} environment",
+            T::NAME
+        )));
     }
     if header.version != VERSION {
         return Err(refused(&format!(
@@ -63,7 +61,7 @@ pub fn load(task: &ReachTask, bytes: &[u8]) -> Result<ReachState, EnvError> {
     if header.body != xxh3_64(body) {
         return Err(refused("the bytes are cut short or altered"));
     }
-    let (state, rest): (ReachState, &[u8]) =
+    let (state, rest): (State<T>, &[u8]) =
         postcard::take_from_bytes(body).map_err(|error| problem(&error))?;
     if rest.is_empty() {
         Ok(state)
@@ -76,18 +74,13 @@ pub fn load(task: &ReachTask, bytes: &[u8]) -> Result<ReachState, EnvError> {
 ///
 /// # Errors
 /// As [`save`].
-pub fn hash(task: &ReachTask, state: &ReachState) -> Result<u64, EnvError> {
+pub fn hash<T: Task>(task: &T, state: &State<T>) -> Result<u64, EnvError> {
     Ok(xxh3_64(&save(task, state)?))
 }
 
-fn fingerprint(task: &ReachTask) -> Result<u64, EnvError> {
-    // Recording is for pictures and changes no episode.
-    let options = Options {
-        record: false,
-        ..task.options
-    };
-    let text = serde_json::to_string(&(&task.config, options))
-        .map_err(|error| refused(&error.to_string()))?;
+fn fingerprint(task: &impl Task) -> Result<u64, EnvError> {
+    let text =
+        serde_json::to_string(&task.fingerprint()).map_err(|error| refused(&error.to_string()))?;
     Ok(xxh3_64(text.as_bytes()))
 }
 

@@ -1,148 +1,150 @@
-//! Everything about reaching that stays the same within and between episodes.
+//! What a batch needs to know of a task and of its episodes.
 
-use babble_body::eye::{Eye, Gaze, Pinhole};
-use babble_body::pose;
-use babble_body::{ArmState, ContactWatch, Dynamics, Obstacle, PlanarArm};
-use nalgebra::{Vector2, Vector3};
+use image::RgbImage;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 
-use crate::case::ReachCase;
-use crate::config::Config;
 use crate::error::EnvError;
-use crate::options::{Options, Outcome, Reward};
+use crate::outcome::Outcome;
+use crate::picture::View;
+use crate::spec::Spec;
+use crate::stream::Stream;
 
-/// Params of the reaching task.
-#[derive(Debug, Clone)]
-pub struct ReachTask {
-    /// The config it was made from.
-    pub config: Config,
-    /// The user's choices.
-    pub options: Options,
-    /// Kinematics.
-    pub arm: PlanarArm,
-    /// Equations of motion.
-    pub dynamics: Dynamics,
-    /// The eye.
-    pub eye: Eye,
+/// Most terms of a reward.
+pub const MAX_TERMS: usize = 4;
+/// Most facts of an episode.
+pub const MAX_FACTS: usize = 8;
+
+/// Everything about a task that stays the same within and between episodes.
+pub trait Task: Send + Sync + Sized + 'static {
+    /// One episode of it.
+    type Episode: Episode<Task = Self>;
+
+    /// What its environments are called in errors.
+    const NAME: &'static str;
+    /// First bytes of its snapshots.
+    const MAGIC: [u8; 4];
+    /// Environments that a thread steps at least: their steps must outlast handing them over.
+    const MIN_PER_THREAD: usize;
+
+    /// Numbers in an action.
+    fn action_len(&self) -> usize;
+
+    /// Numbers in a flat observation.
+    fn senses_len(&self) -> usize;
+
+    /// Observations, actions, and the names of all that an episode shows.
+    fn spec(&self) -> Spec;
+
+    /// All that decides how an episode goes on: a snapshot continues only where it is the same.
+    fn fingerprint(&self) -> impl Serialize;
+
+    /// How many moments of an episode were recorded.
+    fn moments(&self, state: &State<Self>) -> usize;
+
+    /// A picture of an episode; `frame` picks one of its recorded moments, none is now.
+    ///
+    /// # Errors
+    /// [`EnvError::OutOfBounds`] for an edge or frame that is out of bounds.
+    fn picture(
+        &self,
+        state: &State<Self>,
+        view: View,
+        size: [u32; 2],
+        frame: Option<usize>,
+    ) -> Result<RgbImage, EnvError>;
 }
 
-impl ReachTask {
-    /// A task from a config, which is checked here once.
+/// The state of a task's episodes.
+pub type State<T> = <<T as Task>::Episode as Episode>::State;
+/// What a user may ask of a task's cases.
+pub type Request<T> = <<T as Task>::Episode as Episode>::Request;
+
+/// One episode: its state and what follows from it.
+pub trait Episode: Send + Sync {
+    /// The task it is of.
+    type Task: Task<Episode = Self>;
+    /// What a user asks of the cases to come.
+    type Request: Clone + Default;
+    /// A new episode that was drawn and not begun yet.
+    type Drawn: Send;
+    /// Everything that changes: what a snapshot holds.
+    type State: Clone + Send + Sync + Serialize + DeserializeOwned;
+
+    /// An episode that has to be reset before it can step.
+    fn new(task: &Self::Task, stream: Stream) -> Self;
+
+    /// An episode that continues from `state`.
+    fn from_state(task: &Self::Task, state: Self::State) -> Self;
+
+    /// All that changes.
+    fn state(&self) -> &Self::State;
+
+    /// Whether it can be stepped.
+    fn phase(&self) -> Phase;
+
+    /// Starts the stream of cases anew.
+    fn seed(&mut self, stream: Stream);
+
+    /// Sets what the following resets ask of their cases; forgotten if the next one cannot play it.
+    fn request(&mut self, request: Self::Request);
+
+    /// Draws the case of a new episode.
     ///
     /// # Errors
-    /// [`EnvError`] naming the field or option that is out of bounds.
-    pub fn new(config: Config, options: Options) -> Result<Self, EnvError> {
-        config.validate()?;
-        if options.goal && options.reward == Reward::Progress {
-            return Err(EnvError::Option {
-                option: "reward",
-                value: options.reward.to_string(),
-                known: "sparse when obs = \"goal\"".to_owned(),
-            });
-        }
-        if options.goal && options.settled {
-            return Err(EnvError::Option {
-                option: "settled",
-                value: "True".to_owned(),
-                known: "False when obs = \"goal\", whose reward depends on positions alone"
-                    .to_owned(),
-            });
-        }
-        if !(1..=1_000_000).contains(&options.max_episode_steps) {
-            return Err(EnvError::OutOfBounds {
-                option: "max_episode_steps",
-                value: options.max_episode_steps.to_string(),
-                bound: "in [1, 1000000]".to_owned(),
-            });
-        }
-        let arm = PlanarArm::new(&config.body);
-        Ok(Self {
-            dynamics: Dynamics::new(&config.body, &arm),
-            eye: Eye::new(config.body.eye.clone()).map_err(babble_body::BodyError::from)?,
-            arm,
-            config,
-            options,
-        })
-    }
+    /// [`EnvError`] when the case asked for cannot be played; the episode stays as it was.
+    fn draw(&mut self, task: &Self::Task) -> Result<Self::Drawn, EnvError>;
 
-    /// A watch for the arm's first touch of `obstacle` from posture `q` on.
-    #[must_use]
-    pub fn watch(&self, obstacle: Option<Obstacle>, q: [f64; 2]) -> ContactWatch {
-        ContactWatch::new(obstacle, &self.arm, q)
-    }
+    /// Begins an episode that was drawn.
+    fn begin(&mut self, task: &Self::Task, drawn: Self::Drawn);
 
-    /// One control period of physics; true if the arm touched the obstacle, and then stands there.
-    #[inline]
-    pub fn advance(
-        &self,
-        arm: &mut ArmState,
-        watch: &mut ContactWatch,
-        step: impl Fn(ArmState, f64) -> ArmState,
-    ) -> bool {
-        let dt = self.config.reach.physics_step_s();
-        for _ in 0..self.config.reach.physics_steps {
-            let next = step(*arm, dt);
-            if let Some(share) = watch.touch(&self.arm, arm.q, next.q) {
-                let q = [0, 1].map(|i| arm.q[i] + share * (next.q[i] - arm.q[i]));
-                *arm = ArmState::at_rest(q);
-                return true;
-            }
-            *arm = next;
-        }
-        false
-    }
-
-    /// Control periods that the arm is given to settle after a movement.
-    #[must_use]
-    pub fn settle_steps(&self) -> usize {
-        let muscles = &self.config.body.muscles;
-        let settle_s = self.config.reach.settle_time_constants * muscles.kd / muscles.kp;
-        (settle_s / self.config.reach.control_period_s).round() as usize
-    }
-
-    /// Outcome of a movement that ended undisturbed in posture `q`.
-    #[must_use]
-    pub fn end_of_movement(&self, case: &ReachCase, q: [f64; 2]) -> Outcome {
-        if self.distance(case, q) <= self.config.reach.success_radius_m {
-            Outcome::Success
-        } else {
-            Outcome::Timeout
-        }
-    }
-
-    /// Distance from the fingertip to the target \[m\].
-    #[must_use]
-    pub fn distance(&self, case: &ReachCase, q: [f64; 2]) -> f64 {
-        (self.arm.fingertip(q) - Vector2::from(case.target)).norm()
-    }
-
-    /// The gaze that the reflex of Eq. 1 ends in for `case`, from pixels.
-    ///
-    /// The red of the target shows through obstacle and arm: Sect. II-A assumes that the eye always
-    /// foveates the target, and a solid obstacle of any height would hide it in some cases.
+    /// One step of a running episode. `action` has [`Task::action_len`] numbers, all finite; those
+    /// outside of [−1, 1] are clipped.
     ///
     /// # Errors
-    /// [`EnvError::Body`] when the eye cannot find the target.
-    pub fn foveate(&self, case: &ReachCase) -> Result<Gaze, EnvError> {
-        let scene = [pose::target(&self.config.body, case.target)];
-        Ok(self
-            .eye
-            .foveate(&scene, self.eye.rest())
-            .map_err(babble_body::BodyError::from)?)
-    }
+    /// [`EnvError::NeedsReset`] outside of an episode.
+    fn step(&mut self, task: &Self::Task, action: &[f32]) -> Result<Step, EnvError>;
 
-    /// Angles of a point of the plane in the camera frame \[rad\].
-    #[must_use]
-    pub fn angles(camera: &Pinhole, point: Vector2<f64>) -> [f64; 2] {
-        camera.direction_angles(&Vector3::new(point.x, point.y, 0.0))
-    }
+    /// Writes the flat observation, all [`Task::senses_len`] numbers of it.
+    fn observe(&self, task: &Self::Task, out: &mut [f32]);
 
-    /// Angles of the obstacle's axis in the plane \[rad\]; without an obstacle the lowest angles,
-    /// straight behind the eye.
-    #[must_use]
-    pub fn obstacle_angles(camera: &Pinhole, obstacle: Option<&Obstacle>) -> [f64; 2] {
-        use std::f64::consts::{FRAC_PI_2, PI};
-        obstacle.map_or([-PI, -FRAC_PI_2], |obstacle| {
-            Self::angles(camera, obstacle.centre)
-        })
-    }
+    /// What it shows beside the senses.
+    fn standing(&self, task: &Self::Task) -> Standing;
+}
+
+/// Whether an episode can be stepped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Phase {
+    /// Never reset.
+    Fresh,
+    /// Between reset and end.
+    Running,
+    /// Terminated or truncated.
+    Ended,
+}
+
+/// What one step gave.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Step {
+    /// Sum of the terms.
+    pub reward: f64,
+    /// Reward terms in the order of the spec, then zeros.
+    pub terms: [f64; MAX_TERMS],
+    /// Ended by the task.
+    pub terminated: bool,
+    /// Ended by the time limit.
+    pub truncated: bool,
+}
+
+/// What an episode shows beside its senses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Standing {
+    /// Where the task has brought what it moves \[m\]; zeros without a goal form.
+    pub achieved: [f32; 2],
+    /// Where it should be \[m\]; zeros without a goal form.
+    pub desired: [f32; 2],
+    /// How the episode stands.
+    pub outcome: Outcome,
+    /// What is true of it in the order of the spec, then false.
+    pub facts: [bool; MAX_FACTS],
 }

@@ -3,8 +3,10 @@
 mod playing;
 
 use babble_env::batch::Record;
-use babble_env::case::{CaseRequest, ObstacleRequest, obstacle_at};
-use babble_env::{Autoreset, Batch, Config, Control, EnvError, Options, Pool, ReachTask, Reward};
+use babble_env::reach::case::{CaseRequest, ObstacleRequest, obstacle_at};
+use babble_env::{
+    Autoreset, Batch, Config, Control, EnvError, Options, Pool, ReachTask, Reward, Task,
+};
 use playing::{batch, bits, control, goal, task};
 
 /// NaN, infinite and missing numbers are named with their place; no environment of the batch has
@@ -62,7 +64,7 @@ fn stepping_needs_a_reset_first() {
 fn impossible_cases_are_named() {
     let mut env = batch(control(Control::DeltaPosture), 1, Autoreset::NextStep, 1, 2);
     let task = env.task().clone();
-    let start = env.env(0).unwrap().state().case.hand;
+    let start = env.state(0).unwrap().case.hand;
     let (far, behind, nan) = ([0.5, 0.0], [0.0, -0.38], [f64::NAN, 0.1]);
     let ask = |start, target| CaseRequest {
         start,
@@ -152,7 +154,7 @@ fn unknown_environments_are_named() {
     let errors = [
         env.seed(2, 0).unwrap_err(),
         env.save(2).unwrap_err(),
-        env.env(9).map(|_| ()).unwrap_err(),
+        env.state(9).map(|_| ()).unwrap_err(),
         env.request(2, CaseRequest::default()).unwrap_err(),
     ];
     for error in errors {
@@ -165,7 +167,7 @@ fn unknown_environments_are_named() {
 fn observations_keep_to_the_spec() {
     for &of in Control::ALL {
         let mut env = batch(control(of), 8, Autoreset::NextStep, 1, 70);
-        let senses = babble_env::spec::spec(env.task()).senses;
+        let senses = env.task().spec().senses;
         let low: Vec<f64> = senses.iter().flat_map(|entry| entry.low.clone()).collect();
         let high: Vec<f64> = senses.iter().flat_map(|entry| entry.high.clone()).collect();
         let mut actions = playing::Actions::new(8);

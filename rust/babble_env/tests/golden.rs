@@ -9,13 +9,13 @@ mod playing;
 
 use std::collections::BTreeMap;
 
-use babble_env::{Autoreset, Config, Control};
+use babble_env::{Autoreset, Batch, Config, Control, ReachTask};
 use playing::{Actions, batch, control};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// Hash of the state alone: a config field more moves no trajectory.
-fn hash(env: &babble_env::Batch) -> String {
-    let state = postcard::to_stdvec(env.env(0).unwrap().state()).unwrap();
+fn hash(env: &Batch<ReachTask>) -> String {
+    let state = postcard::to_stdvec(env.state(0).unwrap()).unwrap();
     format!("{:016x}", xxh3_64(&state))
 }
 

@@ -2,8 +2,8 @@
 
 mod playing;
 
-use babble_env::case::{CaseRequest, ObstacleRequest};
-use babble_env::movement::{Fidelity, MovementPath};
+use babble_env::reach::case::{CaseRequest, ObstacleRequest};
+use babble_env::reach::movement::{Fidelity, MovementPath};
 use babble_env::{
     Autoreset, Batch, Config, Control, Options, Outcome, Purpose, ReachCase, ReachTask, Stream,
 };
@@ -22,7 +22,7 @@ fn movements(task: &ReachTask, n: u64) -> Vec<(ReachCase, [f64; 2])> {
 }
 
 /// An environment that is reset to play `case`, with its postures recorded.
-fn play(options: Options, case: &ReachCase) -> Batch {
+fn play(options: Options, case: &ReachCase) -> Batch<ReachTask> {
     let options = Options {
         record: true,
         max_episode_steps: 1000,
@@ -51,7 +51,7 @@ fn pattern_step_is_the_plan_played_posture_by_posture() {
         let action = [0.5_f32, -0.5];
         let mut env = play(control(Control::Pattern), &case);
         env.step(&action).unwrap();
-        let state = env.env(0).unwrap().state().clone();
+        let state = env.state(0).unwrap().clone();
         let path = MovementPath::new(&pattern, &state.case, [0.75, 0.25]).unwrap();
         let mut trail = vec![case.start];
         let movement = path.play(&pattern, &state.case, Fidelity::Full, |arm| {
@@ -89,7 +89,7 @@ fn posture_control_plays_the_same_plan() {
                 .normalised(q_des)
                 .map(|share| (2.0 * share - 1.0) as f32);
             env.step(&action).unwrap();
-            let state = env.env(0).unwrap().state();
+            let state = env.state(0).unwrap();
             for i in 0..2 {
                 assert!((state.arm.q[i] - expected[i]).abs() < 1e-6);
             }
@@ -98,7 +98,7 @@ fn posture_control_plays_the_same_plan() {
                 break;
             }
         }
-        let outcome = env.env(0).unwrap().state().outcome;
+        let outcome = env.state(0).unwrap().outcome;
         if movement.outcome == Outcome::Collision && trail.len() <= path.postures().len() {
             assert_eq!(outcome, Outcome::Collision);
         }

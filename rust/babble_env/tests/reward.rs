@@ -3,25 +3,25 @@
 mod playing;
 
 use babble_env::batch::Record;
-use babble_env::case::{CaseRequest, ObstacleRequest};
-use babble_env::reach::goal_reward;
-use babble_env::{Autoreset, Batch, Control, Options, Outcome, Reward, spec};
+use babble_env::reach::case::{CaseRequest, ObstacleRequest};
+use babble_env::reach::{IS_SUCCESS, goal_reward};
+use babble_env::{Autoreset, Batch, Control, Options, Outcome, ReachTask, Reward, Task};
 use playing::{Actions, batch, control, goal};
 
-fn record(env: &Batch) -> Record {
-    *env.records().next().unwrap()
+fn record(env: &Batch<ReachTask>) -> Record {
+    env.records().next().unwrap().clone()
 }
 
 /// An action of posture control that asks for the posture at the target.
-fn to_target(env: &Batch) -> [f32; 2] {
-    let (task, target) = (env.task(), env.env(0).unwrap().state().case.target);
+fn to_target(env: &Batch<ReachTask>) -> [f32; 2] {
+    let (task, target) = (env.task(), env.state(0).unwrap().case.target);
     let q = task.arm.posture_at(target.into()).unwrap();
     task.arm
         .normalised(q)
         .map(|share| (2.0 * share - 1.0) as f32)
 }
 
-fn without_obstacle(options: Options, seed: u64) -> Batch {
+fn without_obstacle(options: Options, seed: u64) -> Batch<ReachTask> {
     let mut env = batch(options, 1, Autoreset::Disabled, 1, seed);
     let obstacle = ObstacleRequest::Absent;
     env.request(
@@ -46,7 +46,7 @@ fn terms_sum_to_the_reward() {
         };
         for options in [control(of), sparse, goal(of)] {
             let mut env = batch(options, 8, Autoreset::SameStep, 1, 40);
-            let named = spec::reward_terms(env.task()).len();
+            let named = env.task().spec().reward_terms.len();
             let mut actions = Actions::new(8);
             for _ in 0..80 {
                 env.step(&actions.draw()).unwrap();
@@ -67,7 +67,7 @@ fn progress_adds_up_over_an_episode() {
         for seed in 0..40 {
             let mut env = batch(control(of), 1, Autoreset::Disabled, 1, seed);
             let mut actions = Actions::new(1);
-            let first = env.env(0).unwrap().state().distance;
+            let first = env.state(0).unwrap().distance;
             let (mut progress, mut others) = (0.0, 0.0);
             loop {
                 env.step(&actions.draw()).unwrap();
@@ -79,7 +79,7 @@ fn progress_adds_up_over_an_episode() {
                 }
                 assert_eq!(others, 0.0);
             }
-            let state = env.env(0).unwrap().state();
+            let state = env.state(0).unwrap();
             assert!((progress - (first - state.distance) / 0.1).abs() < 1e-9);
             let paid = match state.outcome {
                 Outcome::Success => 1.0,
@@ -108,15 +108,15 @@ fn success_ends_the_episode() {
             let mut arrived = None;
             for step in 1.. {
                 env.step(&action).unwrap();
-                let (shown, state) = (record(&env), env.env(0).unwrap().state());
+                let (shown, state) = (record(&env), env.state(0).unwrap());
                 if state.distance <= radius && arrived.is_none() {
                     arrived = Some(step);
                 }
-                assert_eq!(shown.is_success, shown.step.terminated);
+                assert_eq!(shown.standing.facts[IS_SUCCESS], shown.step.terminated);
                 if shown.step.terminated {
                     let slow = state.arm.v.iter().all(|v| v.abs() < 0.05);
                     assert!(if settled { slow } else { arrived == Some(step) });
-                    assert_eq!(shown.outcome, Outcome::Success);
+                    assert_eq!(shown.standing.outcome, Outcome::Success);
                     let term = usize::from(reward == Reward::Progress);
                     assert_eq!(shown.step.terms[term], 1.0);
                     break;
@@ -157,7 +157,7 @@ fn goal_reward_is_the_steps_reward() {
                     assert_eq!(shown.step.reward, 0.0);
                     continue;
                 }
-                let again = goal_reward(&config, shown.achieved, shown.desired);
+                let again = goal_reward(&config, shown.standing.achieved, shown.standing.desired);
                 assert_eq!(shown.step.reward, again);
                 assert_eq!(shown.step.terminated, of == Control::Pattern);
                 reached += usize::from(again == 0.0);
@@ -192,7 +192,7 @@ fn collision_holds_the_arm_in_goal_form() {
                 action
             };
             env.step(&action).unwrap();
-            let (shown, state) = (record(&env), env.env(0).unwrap().state());
+            let (shown, state) = (record(&env), env.state(0).unwrap());
             assert_eq!(
                 (shown.step.terminated, shown.step.truncated),
                 (false, step == 100)
@@ -234,7 +234,7 @@ fn time_limit_truncates() {
             );
             assert_eq!(shown.senses[10], f32::from(step) / 7.0);
         }
-        assert_eq!(record(&env).outcome, Outcome::Timeout);
+        assert_eq!(record(&env).standing.outcome, Outcome::Timeout);
     }
     let mut env = batch(control(Control::Pattern), 1, Autoreset::Disabled, 1, 5);
     env.step(&[0.5, -0.5]).unwrap();
@@ -242,8 +242,8 @@ fn time_limit_truncates() {
     assert_eq!((step.terminated, step.truncated), (true, false));
 }
 
-fn to_start(env: &Batch) -> [f32; 2] {
-    let start = env.env(0).unwrap().state().case.start;
+fn to_start(env: &Batch<ReachTask>) -> [f32; 2] {
+    let start = env.state(0).unwrap().case.start;
     env.task()
         .arm
         .normalised(start)
@@ -259,7 +259,7 @@ fn controls_act_on_their_quantity() {
         for action in actions {
             env.step(action).unwrap();
         }
-        (env.task().clone(), env.env(0).unwrap().state().clone())
+        (env.task().clone(), env.state(0).unwrap().clone())
     };
     let (_, delta) = state(Control::DeltaPosture, &[[1.0, -0.5], [0.2, 0.0]]);
     let moved = [0, 1].map(|i| (delta.equilibrium[i] - delta.case.start[i]).to_degrees());

@@ -13,7 +13,7 @@ fn options(of: Control) -> Options {
     }
 }
 
-fn played(options: Options, steps: usize) -> (Batch, Actions) {
+fn played(options: Options, steps: usize) -> (Batch<ReachTask>, Actions) {
     let mut env = batch(options, 1, Autoreset::NextStep, 1, 8);
     let mut actions = Actions::new(1);
     for _ in 0..steps {
@@ -37,7 +37,8 @@ proptest! {
         other.step(&[0.3, 0.3]).unwrap();
         other.load(0, &bytes).unwrap();
         prop_assert_eq!(other.save(0).unwrap(), bytes);
-        prop_assert_eq!(other.records().next().unwrap().senses, env.records().next().unwrap().senses);
+        let senses = |env: &Batch<ReachTask>| env.records().next().unwrap().senses.clone();
+        prop_assert_eq!(senses(&other), senses(&env));
         for _ in 0..after {
             let action = actions.draw();
             env.step(&action).unwrap();
@@ -47,7 +48,7 @@ proptest! {
     }
 }
 
-fn refused(env: &mut Batch, bytes: &[u8]) {
+fn refused(env: &mut Batch<ReachTask>, bytes: &[u8]) {
     let before = bits(env);
     let error = env
         .load(0, bytes)

@@ -1,9 +1,10 @@
 //! n environments as one Python object.
 
 use babble_env::batch::Record;
-use babble_env::case::{CaseRequest, ObstacleRequest};
-use babble_env::picture::{View, picture};
-use babble_env::{Autoreset, EnvError, snapshot, spec};
+use babble_env::picture::View;
+use babble_env::reach::case::{CaseRequest, ObstacleRequest};
+use babble_env::reach::{EVER_SUCCESS, IS_SUCCESS};
+use babble_env::{Autoreset, EnvError, ReachTask, Task as _, snapshot};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
@@ -18,7 +19,7 @@ type Ended<'py> = (Bound<'py, PyArray1<usize>>, Bound<'py, PyDict>);
 #[pyclass(module = "gym_babble._core")]
 #[derive(Debug)]
 pub(crate) struct Batch {
-    batch: babble_env::Batch,
+    batch: babble_env::Batch<ReachTask>,
     terms: usize,
 }
 
@@ -31,7 +32,7 @@ impl Batch {
             let autoreset = autoreset.parse::<Autoreset>()?;
             babble_env::Batch::new(task.task.clone(), num_envs, autoreset, threads)
         };
-        let terms = spec::reward_terms(&task.task).len();
+        let terms = task.task.spec().reward_terms.len();
         Ok(Self {
             batch: make().map_err(errors::env)?,
             terms,
@@ -115,9 +116,9 @@ impl Batch {
             step.reward,
             step.terminated,
             step.truncated,
-            record.outcome as usize,
-            record.is_success,
-            record.ever_success,
+            record.standing.outcome as usize,
+            record.standing.facts[IS_SUCCESS],
+            record.standing.facts[EVER_SUCCESS],
             PyTuple::new(py, &step.terms[..self.terms])?,
         )
             .into_pyobject(py)
@@ -127,7 +128,7 @@ impl Batch {
     fn one_goals<'py>(&self, py: Python<'py>) -> Vec<Bound<'py, PyArray1<f32>>> {
         let record = self.batch.records().next();
         record.map_or_else(Vec::new, |r| {
-            [r.achieved, r.desired]
+            [r.standing.achieved, r.standing.desired]
                 .map(|x| PyArray1::from_slice(py, &x))
                 .into()
         })
@@ -171,26 +172,25 @@ impl Batch {
 
     /// A number that two states share only if they are the same to the bit.
     fn state_hash(&self, i: usize) -> PyResult<u64> {
-        let hash = |env: &babble_env::Reach| snapshot::hash(self.batch.task(), env.state());
-        self.batch.env(i).and_then(hash).map_err(errors::env)
+        let hash = |state| snapshot::hash(&**self.batch.task(), state);
+        self.batch.state(i).and_then(hash).map_err(errors::env)
     }
 
     /// Start, target and obstacle of environment `i`.
     fn case<'py>(&self, py: Python<'py>, i: usize) -> PyResult<Bound<'py, PyDict>> {
-        convert::case(py, &self.batch.env(i).map_err(errors::env)?.state().case)
+        convert::case(py, &self.batch.state(i).map_err(errors::env)?.case)
     }
 
     /// Joint angles (2,) \[rad\] of environment `i`.
     fn posture(&self, i: usize) -> PyResult<[f64; 2]> {
-        Ok(self.batch.env(i).map_err(errors::env)?.state().arm.q)
+        Ok(self.batch.state(i).map_err(errors::env)?.arm.q)
     }
 
     /// Recorded ways of the fingertip of environment `i` (k, 2) \[m\].
     fn trail<'py>(&self, py: Python<'py>, i: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let env = self.batch.env(i).map_err(errors::env)?;
+        let state = self.batch.state(i).map_err(errors::env)?;
         let arm = &self.batch.task().arm;
-        let tips: Vec<[f64; 2]> = env
-            .state()
+        let tips: Vec<[f64; 2]> = state
             .trail
             .iter()
             .map(|&q| arm.fingertip(q).into())
@@ -210,14 +210,10 @@ impl Batch {
         frame: Option<usize>,
     ) -> PyResult<Bound<'py, PyArray3<u8>>> {
         let draw = || {
-            let state = self.batch.env(i)?.state();
-            picture(
-                self.batch.task(),
-                state,
-                camera.parse::<View>()?,
-                [width, height],
-                frame,
-            )
+            let state = self.batch.state(i)?;
+            self.batch
+                .task()
+                .picture(state, camera.parse::<View>()?, [width, height], frame)
         };
         let image = py.detach(draw).map_err(errors::env)?;
         PyArray1::from_vec(py, image.into_raw()).reshape([height as usize, width as usize, 3])
@@ -234,7 +230,8 @@ impl Batch {
         let Some(last) = self.batch.last().nth(i).flatten() else {
             return Ok(None);
         };
-        let draw = || picture(self.batch.task(), &last.state, View::Eye, [size; 2], None);
+        let task = self.batch.task();
+        let draw = || task.picture(&last.state, View::Eye, [size; 2], None);
         let image = py.detach(draw).map_err(errors::env)?;
         let shape = [size as usize, size as usize, 3];
         PyArray1::from_vec(py, image.into_raw())
@@ -256,15 +253,19 @@ impl Batch {
             .flat_map(|r| r.step.terms[..self.terms].iter().copied())
             .collect();
         let dict = PyDict::new(py);
-        let senses: Vec<_> = each().map(|r| r.senses).collect();
-        dict.set_item("senses", convert::array2(py, &senses)?)?;
+        let senses: Vec<&[f32]> = each().map(|r| &r.senses[..]).collect();
+        let senses = PyArray1::from_vec(py, senses.concat());
+        dict.set_item(
+            "senses",
+            senses.reshape([records.len(), self.batch.task().senses_len()])?,
+        )?;
         dict.set_item(
             "achieved_goal",
-            convert::array2(py, &each().map(|r| r.achieved).collect::<Vec<_>>())?,
+            convert::array2(py, &each().map(|r| r.standing.achieved).collect::<Vec<_>>())?,
         )?;
         dict.set_item(
             "desired_goal",
-            convert::array2(py, &each().map(|r| r.desired).collect::<Vec<_>>())?,
+            convert::array2(py, &each().map(|r| r.standing.desired).collect::<Vec<_>>())?,
         )?;
         dict.set_item(
             "reward",
@@ -280,15 +281,15 @@ impl Batch {
         )?;
         dict.set_item(
             "outcome",
-            PyArray1::from_iter(py, each().map(|r| r.outcome as usize)),
+            PyArray1::from_iter(py, each().map(|r| r.standing.outcome as usize)),
         )?;
         dict.set_item(
             "is_success",
-            PyArray1::from_iter(py, each().map(|r| r.is_success)),
+            PyArray1::from_iter(py, each().map(|r| r.standing.facts[IS_SUCCESS])),
         )?;
         dict.set_item(
             "ever_success",
-            PyArray1::from_iter(py, each().map(|r| r.ever_success)),
+            PyArray1::from_iter(py, each().map(|r| r.standing.facts[EVER_SUCCESS])),
         )?;
         dict.set_item(
             "terms",

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use babble_agent::reference;
-use babble_env::movement::{Fidelity, MovementPath};
-use babble_env::reach::{SENSES, goal_reward};
+use babble_env::reach::movement::{Fidelity, MovementPath};
+use babble_env::reach::{SENSES, goal_reward, protocol};
 use babble_env::{
-    Config, Control, EnvError, Options, Pool, Purpose, ReachCase, ReachTask, Reward, config,
-    protocol, spec,
+    Config, Control, EnvError, Options, Pool, Purpose, ReachCase, ReachTask, Reward, Task as _,
+    config,
 };
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -115,7 +115,7 @@ impl Task {
 
     /// Observations, actions, reward terms and outcomes, as JSON.
     fn spec(&self) -> PyResult<String> {
-        serde_json::to_string(&spec::spec(&self.task))
+        serde_json::to_string(&self.task.spec())
             .map_err(|error| pyo3::exceptions::PyRuntimeError::new_err(error.to_string()))
     }
 

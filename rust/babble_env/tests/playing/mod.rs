@@ -35,7 +35,7 @@ pub(crate) fn batch(
     autoreset: Autoreset,
     threads: usize,
     seed: u64,
-) -> Batch {
+) -> Batch<ReachTask> {
     let mut batch = Batch::new(task(options), n, autoreset, threads).unwrap();
     for i in 0..n {
         batch.seed(i, seed + i as u64).unwrap();
@@ -64,7 +64,7 @@ impl Actions {
 }
 
 /// Everything that a batch holds and shows.
-pub(crate) fn bits(batch: &Batch) -> (Vec<Vec<u8>>, Vec<Record>) {
+pub(crate) fn bits(batch: &Batch<ReachTask>) -> (Vec<Vec<u8>>, Vec<Record>) {
     let states = (0..batch.len()).map(|i| batch.save(i).unwrap()).collect();
-    (states, batch.records().copied().collect())
+    (states, batch.records().cloned().collect())
 }

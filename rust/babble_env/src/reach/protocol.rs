@@ -3,12 +3,12 @@
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
-use crate::case::ReachCase;
+use super::case::ReachCase;
+use super::movement::Fidelity;
+use super::task::ReachTask;
 use crate::error::EnvError;
-use crate::movement::Fidelity;
 use crate::pool::Pool;
 use crate::stream::{Purpose, Stream};
-use crate::task::ReachTask;
 
 /// Targets of Fig. 4.
 const FIG4_TARGETS: usize = 4;

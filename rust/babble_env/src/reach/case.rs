@@ -4,10 +4,10 @@ use babble_body::Obstacle;
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
+use super::movement::{Fidelity, MovementPath};
+use super::task::ReachTask;
 use crate::error::EnvError;
-use crate::movement::{Fidelity, MovementPath};
 use crate::stream::Stream;
-use crate::task::ReachTask;
 
 /// How often a case is drawn before the config is called impossible.
 const MAX_TRIES: u32 = 100_000;

@@ -4,29 +4,26 @@ use babble_body::eye::{Gaze, Pinhole};
 use babble_body::{ArmState, Obstacle};
 use serde::{Deserialize, Serialize};
 
-use crate::case::{CaseRequest, ReachCase};
+use super::case::{CaseRequest, ReachCase};
+use super::movement::{Fidelity, MovementPath};
+use super::options::{Control, Reward};
+use super::task::ReachTask;
 use crate::config::Config;
 use crate::error::EnvError;
-use crate::movement::{Fidelity, MovementPath};
-use crate::options::{Control, Outcome, Reward};
+use crate::outcome::Outcome;
 use crate::stream::Stream;
-use crate::task::ReachTask;
+use crate::task::{Episode, MAX_FACTS, MAX_TERMS, Phase, Standing, Step};
 
 /// Numbers in a flat observation: eye 2, obstacle 2, hand 2, arm 2, stretch 2, time 1.
 pub const SENSES: usize = 11;
+/// What is true or false of an episode.
+pub(super) const FACTS: [&str; 2] = ["is_success", "ever_success"];
+/// Place of [`ReachState::is_success`] among the facts.
+pub const IS_SUCCESS: usize = 0;
+/// Place of [`ReachState::ever_success`] among the facts.
+pub const EVER_SUCCESS: usize = 1;
 /// Distance that the progress reward calls 1 \[m\].
 const PROGRESS_UNIT_M: f64 = 0.1;
-
-/// Whether an episode can be stepped.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Phase {
-    /// Never reset.
-    Fresh,
-    /// Between reset and end.
-    Running,
-    /// Terminated or truncated.
-    Ended,
-}
 
 /// Everything that changes: what a snapshot holds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -57,19 +54,6 @@ pub struct ReachState {
     pub stream: Stream,
     /// Postures at the end of each control period, when they are recorded.
     pub trail: Vec<[f64; 2]>,
-}
-
-/// What one step gave.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Step {
-    /// Sum of the terms.
-    pub reward: f64,
-    /// Reward terms, in the order of [`crate::spec::reward_terms`].
-    pub terms: [f64; 3],
-    /// Ended by the task.
-    pub terminated: bool,
-    /// Ended by the time limit.
-    pub truncated: bool,
 }
 
 /// One episode: its state and what follows from it.
@@ -110,10 +94,13 @@ impl Sight {
     }
 }
 
-impl Reach {
-    /// An episode that has to be reset before it can step.
-    #[must_use]
-    pub fn new(task: &ReachTask, stream: Stream) -> Self {
+impl Episode for Reach {
+    type Task = ReachTask;
+    type Request = CaseRequest;
+    type Drawn = Drawn;
+    type State = ReachState;
+
+    fn new(task: &ReachTask, stream: Stream) -> Self {
         let start = task.arm.denormalised([0.5, 0.5]);
         let hand = task.arm.fingertip(start);
         let case = ReachCase {
@@ -148,9 +135,7 @@ impl Reach {
         }
     }
 
-    /// An episode that continues from `state`.
-    #[must_use]
-    pub fn from_state(task: &ReachTask, state: ReachState) -> Self {
+    fn from_state(task: &ReachTask, state: ReachState) -> Self {
         Self {
             sight: Sight::new(task, state.gaze, state.case.obstacle.as_ref()),
             state,
@@ -158,37 +143,24 @@ impl Reach {
         }
     }
 
-    /// All that changes.
-    #[must_use]
-    pub const fn state(&self) -> &ReachState {
+    fn state(&self) -> &ReachState {
         &self.state
     }
 
-    /// Starts the stream of cases anew.
-    pub fn seed(&mut self, stream: Stream) {
+    fn phase(&self) -> Phase {
+        self.state.phase
+    }
+
+    fn seed(&mut self, stream: Stream) {
         self.state.stream = stream;
     }
 
-    /// Sets what the following resets ask of their cases; forgotten if the next one cannot play it.
-    pub fn request(&mut self, request: CaseRequest) {
+    fn request(&mut self, request: CaseRequest) {
         self.asked = Some(request);
     }
 
-    /// Begins a new episode.
-    ///
-    /// # Errors
-    /// As [`Self::draw`].
-    pub fn reset(&mut self, task: &ReachTask) -> Result<(), EnvError> {
-        let drawn = self.draw(task)?;
-        self.begin(task, drawn);
-        Ok(())
-    }
-
-    /// Draws the case of a new episode and lets the eye find its target.
-    ///
-    /// # Errors
-    /// [`EnvError`] when the case asked for cannot be played; the episode stays as it was.
-    pub fn draw(&mut self, task: &ReachTask) -> Result<Drawn, EnvError> {
+    /// Also lets the eye find the target.
+    fn draw(&mut self, task: &ReachTask) -> Result<Drawn, EnvError> {
         let request = self.asked.take().unwrap_or(self.state.request);
         let mut stream = self.state.stream.clone();
         let case = request.draw(task, &mut stream)?;
@@ -200,8 +172,7 @@ impl Reach {
         })
     }
 
-    /// Puts the arm at the start of an episode that was drawn.
-    pub fn begin(&mut self, task: &ReachTask, drawn: Drawn) {
+    fn begin(&mut self, task: &ReachTask, drawn: Drawn) {
         let Drawn {
             case,
             gaze,
@@ -228,12 +199,8 @@ impl Reach {
         }
     }
 
-    /// One control step, or one whole movement in `pattern` control. `action` is finite and has two
-    /// numbers; those outside of [−1, 1] are clipped.
-    ///
-    /// # Errors
-    /// [`EnvError::NeedsReset`] outside of an episode.
-    pub fn step(&mut self, task: &ReachTask, action: &[f32]) -> Result<Step, EnvError> {
+    /// One control step, or one whole movement in `pattern` control.
+    fn step(&mut self, task: &ReachTask, action: &[f32]) -> Result<Step, EnvError> {
         if self.state.phase != Phase::Running {
             return Err(EnvError::NeedsReset { env: 0 });
         }
@@ -251,6 +218,37 @@ impl Reach {
         Ok(self.judge(task, before))
     }
 
+    fn observe(&self, task: &ReachTask, out: &mut [f32]) {
+        let state = &self.state;
+        let tip = task.arm.fingertip(state.arm.q);
+        let hand = ReachTask::angles(&self.sight.camera, tip);
+        let arm = task.arm.normalised(state.arm.q);
+        out[..4].copy_from_slice(&self.sight.senses);
+        for i in 0..2 {
+            out[4 + i] = hand[i] as f32;
+            out[6 + i] = arm[i] as f32;
+            out[8 + i] = (state.equilibrium[i] - state.arm.q[i]) as f32;
+        }
+        out[10] =
+            (f64::from(state.steps) / f64::from(task.options.max_episode_steps)).min(1.0) as f32;
+    }
+
+    fn standing(&self, task: &ReachTask) -> Standing {
+        let state = &self.state;
+        let tip: [f64; 2] = task.arm.fingertip(state.arm.q).into();
+        let mut facts = [false; MAX_FACTS];
+        facts[IS_SUCCESS] = state.is_success;
+        facts[EVER_SUCCESS] = state.ever_success;
+        Standing {
+            achieved: tip.map(|x| x as f32),
+            desired: state.case.target.map(|x| x as f32),
+            outcome: state.outcome,
+            facts,
+        }
+    }
+}
+
+impl Reach {
     fn play(&mut self, task: &ReachTask, action: [f64; 2]) -> Result<Outcome, EnvError> {
         let [low, high] = task.config.reach.b_range;
         let b = action.map(|a| (0.5 + 0.5 * a).clamp(low, high));
@@ -346,28 +344,6 @@ impl Reach {
             truncated,
         }
     }
-
-    /// Writes the flat observation.
-    pub fn observe(&self, task: &ReachTask, out: &mut [f32; SENSES]) {
-        let state = &self.state;
-        let tip = task.arm.fingertip(state.arm.q);
-        let hand = ReachTask::angles(&self.sight.camera, tip);
-        let arm = task.arm.normalised(state.arm.q);
-        out[..4].copy_from_slice(&self.sight.senses);
-        for i in 0..2 {
-            out[4 + i] = hand[i] as f32;
-            out[6 + i] = arm[i] as f32;
-            out[8 + i] = (state.equilibrium[i] - state.arm.q[i]) as f32;
-        }
-        out[10] =
-            (f64::from(state.steps) / f64::from(task.options.max_episode_steps)).min(1.0) as f32;
-    }
-
-    /// Position of the fingertip \[m\].
-    #[must_use]
-    pub fn fingertip(&self, task: &ReachTask) -> [f64; 2] {
-        task.arm.fingertip(self.state.arm.q).into()
-    }
 }
 
 /// Reward of the goal form, from positions alone \[m\]: 0 within the success radius, else −1.
@@ -389,21 +365,23 @@ fn goal_reached(task: &ReachTask, state: &ReachState) -> bool {
     goal_reward(&task.config, single(achieved), single(state.case.target)) == 0.0
 }
 
-fn reward_terms(task: &ReachTask, before: f64, state: &ReachState) -> [f64; 3] {
+fn reward_terms(task: &ReachTask, before: f64, state: &ReachState) -> [f64; MAX_TERMS] {
     let success = f64::from(u8::from(state.outcome == Outcome::Success));
     let failure = f64::from(u8::from(matches!(
         state.outcome,
         Outcome::Collision | Outcome::JointLimit
     )));
     if task.options.goal {
-        return [if goal_reached(task, state) { 0.0 } else { -1.0 }, 0.0, 0.0];
+        let term = if goal_reached(task, state) { 0.0 } else { -1.0 };
+        return [term, 0.0, 0.0, 0.0];
     }
     match task.options.reward {
         Reward::Progress => [
             (before - state.distance) / PROGRESS_UNIT_M,
             success,
             0.0 - failure,
+            0.0,
         ],
-        Reward::Sparse => [success, 0.0, 0.0],
+        Reward::Sparse => [success, 0.0, 0.0, 0.0],
     }
 }

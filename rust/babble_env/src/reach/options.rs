@@ -1,4 +1,4 @@
-//! The choices a user makes when an environment is made, and the names of what comes out.
+//! The choices a user makes when a reaching environment is made.
 
 use serde::{Deserialize, Serialize};
 
@@ -29,22 +29,7 @@ named_enum!(
     Sparse = "sparse"
 );
 
-named_enum!(
-    /// How an episode stands or ended.
-    Outcome, "outcome",
-    /// Not ended.
-    Running = "running",
-    /// The fingertip reached the target.
-    Success = "success",
-    /// The arm touched the obstacle.
-    Collision = "collision",
-    /// The posture asked for left the joint ranges.
-    JointLimit = "joint_limit",
-    /// The time was up.
-    Timeout = "timeout"
-);
-
-/// The choices a user makes when an environment is made.
+/// The choices a user makes when a reaching environment is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Options {
     /// Meaning of the action.

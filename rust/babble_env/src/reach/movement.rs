@@ -4,10 +4,10 @@ use babble_body::ArmState;
 use babble_brain::TimeBaseGenerator;
 use nalgebra::Vector2;
 
-use crate::case::ReachCase;
+use super::case::ReachCase;
+use super::task::ReachTask;
 use crate::error::EnvError;
-use crate::options::Outcome;
-use crate::task::ReachTask;
+use crate::outcome::Outcome;
 
 /// How a movement is simulated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

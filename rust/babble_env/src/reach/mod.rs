@@ -1,0 +1,16 @@
+//! Reaching a target around an obstacle (Sect. III).
+
+pub mod case;
+mod episode;
+pub mod movement;
+mod options;
+mod picture;
+pub mod protocol;
+mod spec;
+mod task;
+
+pub use case::ReachCase;
+pub use episode::{Drawn, EVER_SUCCESS, IS_SUCCESS, Reach, ReachState, SENSES, goal_reward};
+pub use movement::{Movement, MovementPath};
+pub use options::{Control, MAX_EPISODE_STEPS, Options, Reward};
+pub use task::ReachTask;

@@ -1,0 +1,31 @@
+//! What environments take and show is what their spec says.
+
+mod playing;
+
+use babble_env::task::{MAX_FACTS, MAX_TERMS};
+use babble_env::{Autoreset, Control, Task};
+use playing::{Actions, batch, control};
+
+/// Numbers of senses and actions, outcomes, facts and terms, in every control. Catches a sense or
+/// an outcome that is in the task and not in its spec, which Python would name wrongly.
+#[test]
+fn tasks_keep_to_their_spec() {
+    for &of in Control::ALL {
+        let mut env = batch(control(of), 8, Autoreset::NextStep, 1, 30);
+        let (task, spec) = (env.task().clone(), env.task().spec());
+        assert_eq!(task.action_len(), spec.action.labels.len());
+        assert!(spec.facts.len() <= MAX_FACTS && spec.reward_terms.len() <= MAX_TERMS);
+        let senses: usize = spec.senses.iter().map(|entry| entry.labels.len()).sum();
+        assert_eq!(task.senses_len(), senses);
+        let mut actions = Actions::new(8);
+        for _ in 0..300 {
+            env.step(&actions.draw()).unwrap();
+            for record in env.records() {
+                assert_eq!(record.senses.len(), senses);
+                assert!(spec.outcomes.contains(&record.standing.outcome.name()));
+                let unnamed = &record.standing.facts[spec.facts.len()..];
+                assert!(unnamed.iter().all(|&fact| !fact));
+            }
+        }
+    }
+}

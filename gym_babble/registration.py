@@ -15,6 +15,7 @@ class Registered:
     """One row of the table."""
 
     id: str
+    task: str
     obs: str
     control: str
     reward: str
@@ -30,11 +31,14 @@ class Registered:
         return {"obs": self.obs, "control": self.control, "reward": self.reward}
 
 
+ENTRY_POINTS = {"reach": ("BabbleReachEnv", "BabbleReachVectorEnv")}
+"""Single and vector environment of each task, in `gym_babble.envs`."""
+
 ENVIRONMENTS = (
-    Registered("BabbleReach-v0", "senses", "delta_posture", "progress", 240, 2.3),
-    Registered("BabbleReachSparse-v0", "senses", "delta_posture", "sparse", 240, 0.9),
-    Registered("BabbleReachGoal-v0", "goal", "delta_posture", "sparse", 240, -120.0),
-    Registered("BabbleReachPattern-v0", "senses", "pattern", "sparse", None, 0.9),
+    Registered("BabbleReach-v0", "reach", "senses", "delta_posture", "progress", 240, 2.3),
+    Registered("BabbleReachSparse-v0", "reach", "senses", "delta_posture", "sparse", 240, 0.9),
+    Registered("BabbleReachGoal-v0", "reach", "goal", "delta_posture", "sparse", 240, -120.0),
+    Registered("BabbleReachPattern-v0", "reach", "senses", "pattern", "sparse", None, 0.9),
 )
 
 
@@ -43,10 +47,11 @@ def register_all() -> None:
     for row in ENVIRONMENTS:
         if row.id in gymnasium.registry:
             continue
+        single, vector = ENTRY_POINTS[row.task]
         gymnasium.register(
             id=row.id,
-            entry_point="gym_babble.envs:BabbleReachEnv",
-            vector_entry_point="gym_babble.envs:BabbleReachVectorEnv",
+            entry_point=f"gym_babble.envs:{single}",
+            vector_entry_point=f"gym_babble.envs:{vector}",
             reward_threshold=row.reward_threshold,
             max_episode_steps=row.max_episode_steps,
             kwargs=row.kwargs,

@@ -160,7 +160,7 @@ def switched(case: Scenario) -> Scenario:
 
 def starts_without_case(body: BodyLike = "paper") -> NDArray[np.float64]:
     """Starts of Fig. 4 (n, 2) [m] out of reach, or with the arm inside of the obstacle."""
-    listed = _core.Task(config_json(body)).fig4()
+    listed = _core.ReachTask(config_json(body)).fig4()
     angles = 2.0 * np.pi * np.arange(STARTS) / STARTS
     missing = []
     for first in range(0, len(listed), STARTS):

@@ -97,7 +97,7 @@ class BabbleVecEnv(VecEnv):
         return observation  # type: ignore[no-any-return]
 
     def step_async(self, actions: NDArray[Any]) -> None:
-        """Takes the actions of the next step (n, 2)."""
+        """Takes the actions of the next step (n, k)."""
         self._actions = actions
 
     def step_wait(self) -> VecEnvStepReturn:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from gymnasium import spaces
@@ -15,7 +15,10 @@ from gym_babble.errors import ActionError, ConfigError
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from gym_babble._core import Task
+    from gym_babble import _core
+
+    Task: TypeAlias = _core.ReachTask
+    """A task of any kind."""
 
 __all__ = ["OBSERVATIONS", "Entry", "Spec", "as_actions", "observation_space"]
 
@@ -49,6 +52,7 @@ class Spec:
     goals: tuple[Entry, ...]
     action: Entry
     reward_terms: tuple[str, ...]
+    facts: tuple[str, ...]
     outcomes: tuple[str, ...]
     max_episode_steps: int
     control_hz: float
@@ -67,6 +71,7 @@ class Spec:
             goals=tuple(_entry(entry) for entry in raw["goals"]),
             action=_entry(raw["action"]),
             reward_terms=tuple(raw["reward_terms"]),
+            facts=tuple(raw["facts"]),
             outcomes=tuple(raw["outcomes"]),
             max_episode_steps=raw["max_episode_steps"],
             control_hz=raw["control_hz"],
@@ -105,14 +110,15 @@ def observation_space(spec: Spec, obs: str, retina_size: int) -> spaces.Space[An
         return spec.flat
     if obs == "senses":
         return spaces.Dict({entry.name: entry.box for entry in spec.senses})
-    if obs == "goal":
+    if obs == "goal" and spec.goals:
         goals = {entry.name: entry.box for entry in spec.goals}
         return spaces.Dict({"observation": spec.flat, **goals})
     if obs == "retina":
         image = spaces.Box(0, 255, (retina_size, retina_size, 3), np.uint8)
         senses = {entry.name: entry.box for entry in spec.senses}
         return spaces.Dict({**senses, "retina": image})
-    raise ConfigError(f"obs = {obs!r} is not one of {', '.join(OBSERVATIONS)}")
+    known = [name for name in OBSERVATIONS if name != "goal" or spec.goals]
+    raise ConfigError(f"obs = {obs!r} is not one of {', '.join(known)}")
 
 
 def as_actions(action: Any, shape: tuple[int, ...]) -> NDArray[np.float32]:

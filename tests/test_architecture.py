@@ -31,6 +31,15 @@ OWNERS = {
     "numpy": "babble_py",
 }
 
+# What steps, shows and stores any task, and the words that belong to one of them.
+SHARED = {
+    "rust/babble_env/src": ("batch", "outcome", "picture", "pool", "snapshot", "spec", "task"),
+    "gym_babble/envs": ("choices", "one", "single", "vector", "window"),
+}
+OF_ONE_TASK = re.compile(
+    r"(?i)\w*(reach|grasp)\w*|\b(is|ever)_success\b|\b(obstacle|target|control|b1)\b"
+)
+
 HEAVY_MODULES = {"matplotlib", "pygame", "ray", "rich", "stable_baselines3", "torch", "typer"}
 
 
@@ -83,6 +92,16 @@ def test_each_engine_and_binding_is_named_in_its_owners_sources_alone(crates, re
         if owner_of(library) != name
     }
     assert not strangers
+
+
+@pytest.mark.parametrize(
+    "path", [f"{folder}/{name}" for folder, names in SHARED.items() for name in names]
+)
+def test_shared_code_knows_no_task(repository, path):
+    (file,) = repository.glob(f"{path}.*")
+    # Prose aside: Rust's and Python's comments, and docstrings.
+    code = re.sub(r'"""(?s:.*?)"""|(//|#).*', "", file.read_text(encoding="utf-8"))
+    assert not {found.group() for found in OF_ONE_TASK.finditer(code)}
 
 
 @pytest.mark.parametrize(

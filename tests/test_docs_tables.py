@@ -112,11 +112,14 @@ def test_the_numbers_in_the_text_are_the_configs():
     assert f"`icub`: {100 * icub[0]:g}–{100 * icub[1]:g} cm" in text
 
 
-def test_reward_terms_and_outcomes_are_the_cores():
+def test_reward_terms_facts_and_outcomes_are_the_cores():
     text = " ".join(DOCSTRING.split())
     spec = BabbleReachEnv().choices.spec
     assert f"terms {' + '.join(spec.reward_terms)}" in text
     assert f"`outcome` ({', '.join(spec.outcomes)})" in text
+    assert set(spec.outcomes) < set(_core.outcomes())
+    info = text.partition("## Info")[2].partition("##")[0]
+    assert re.findall(r"`(\w+)`", info) == [*spec.facts, "outcome", "reward_terms"]
 
 
 def test_the_docs_table_of_ids_is_the_registrys(repository):

@@ -106,6 +106,7 @@ def test_info_has_the_documented_keys(env_id):
     _, info = env.reset(seed=0)
     stepped = env.step(env.action_space.sample())[4]
     for shown in (info, stepped):
+        assert list(shown) == [*env.unwrapped.choices.spec.facts, "outcome", "reward_terms"]
         assert set(shown) == {"is_success", "ever_success", "outcome", "reward_terms"}
         assert type(shown["is_success"]) is bool
         assert type(shown["ever_success"]) is bool

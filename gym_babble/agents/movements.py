@@ -9,13 +9,12 @@ import gymnasium
 import numpy as np
 from gymnasium.vector import VectorEnv
 
+from gym_babble.envs.reach import ReachChoices
 from gym_babble.errors import ConfigError
 from gym_babble.spaces import Spec
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from gym_babble.envs.task import ReachChoices
 
 __all__ = ["Agent", "MovementAgent", "Playing", "choices_of"]
 
@@ -47,10 +46,10 @@ class Playing(NamedTuple):
 
 
 def choices_of(env: EnvLike) -> ReachChoices:
-    """What an environment was made with.
+    """What a reaching environment was made with.
 
     Raises:
-        ConfigError: It is not an environment of this package.
+        ConfigError: It is not a reaching environment of this package.
     """
     if isinstance(env, str):
         env = gymnasium.make(env)
@@ -60,9 +59,9 @@ def choices_of(env: EnvLike) -> ReachChoices:
         found = env.get_attr("choices")[0]
     else:
         found = getattr(env, "choices", None)
-    if found is None:
-        raise ConfigError(f"{env!r} is not a Babble environment")
-    return found  # type: ignore[no-any-return]
+    if not isinstance(found, ReachChoices):
+        raise ConfigError(f"{env!r} is not a Babble environment for reaching")
+    return found
 
 
 class MovementAgent(ABC):

@@ -1,6 +1,7 @@
 """The environments."""
 
-from gym_babble.envs.reach import BabbleReachEnv
-from gym_babble.envs.vector import BabbleReachVectorEnv
+from gym_babble.envs.reach import BabbleReachEnv, BabbleReachVectorEnv
+from gym_babble.envs.single import BabbleEnv
+from gym_babble.envs.vector import BabbleVectorEnv
 
-__all__ = ["BabbleReachEnv", "BabbleReachVectorEnv"]
+__all__ = ["BabbleEnv", "BabbleReachEnv", "BabbleReachVectorEnv", "BabbleVectorEnv"]

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from gym_babble._core import Batch
-    from gym_babble.envs.task import ReachChoices
+    from gym_babble.envs.choices import Choices
 
 __all__ = ["OneEnv"]
 
@@ -21,7 +21,7 @@ __all__ = ["OneEnv"]
 class OneEnv:
     """What belongs to environment `i` of a batch, and not to the batch as a whole."""
 
-    def __init__(self, choices: ReachChoices, batch: Batch, i: int) -> None:
+    def __init__(self, choices: Choices, batch: Batch, i: int) -> None:
         self._choices = choices
         self._batch = batch
         self._i = i
@@ -39,7 +39,7 @@ class OneEnv:
             SnapshotError: The bytes are not such a state; the environment is as it was.
         """
         self._batch.load(self._i, state)
-        self._shown = len(self.trajectory)
+        self._shown = self._batch.moments(self._i)
         self.ready = True
 
     def freeze(self) -> tuple[bytes, bool, int]:
@@ -58,12 +58,12 @@ class OneEnv:
 
     @property
     def scenario(self) -> dict[str, Any]:
-        """Start, target and obstacle of the running episode [m], as `reset` options."""
+        """The case of the running episode, as `reset` options."""
         return dict(self._batch.case(self._i))
 
     @property
     def trajectory(self) -> NDArray[np.float64]:
-        """The way of the fingertip since the reset (k, 2) [m]; recorded with a render_mode."""
+        """The way of the hand since the reset (k, 2) [m]; recorded with a render_mode."""
         return self._batch.trail(self._i)
 
     def render(self) -> Any:
@@ -75,7 +75,7 @@ class OneEnv:
         if self._choices.render_mode is None:
             gymnasium.logger.warn(
                 "render() was called without a render_mode; make the environment with one, "
-                'e.g. gymnasium.make("BabbleReach-v0", render_mode="rgb_array")'
+                'e.g. render_mode="rgb_array"'
             )
             return None
         if not self.ready:
@@ -91,7 +91,7 @@ class OneEnv:
 
     def new_frames(self) -> list[NDArray[np.uint8]]:
         """The frames since the last call, one a control step."""
-        end = len(self.trajectory)
+        end = self._batch.moments(self._i)
         # A trail shorter than what was shown belongs to an episode begun since.
         first = self._shown if self._shown <= end else 0
         self._shown = end

@@ -2,29 +2,102 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-import gymnasium
+import numpy as np
+from gymnasium.vector import AutoresetMode
 
 from gym_babble import _core
-from gym_babble.envs.one import OneEnv
-from gym_babble.envs.task import RENDER_MODES, ReachChoices
-from gym_babble.envs.window import Window
-from gym_babble.scenarios import read_options
-from gym_babble.spaces import as_actions
+from gym_babble.config import BodyLike, config_json
+from gym_babble.envs.choices import Choices, check_whole, numbers
+from gym_babble.envs.single import BabbleEnv
+from gym_babble.envs.vector import BabbleVectorEnv
+from gym_babble.errors import ConfigError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    import numpy as np
     from numpy.typing import NDArray
 
-    from gym_babble.config import BodyLike
-
-__all__ = ["BabbleReachEnv"]
+__all__ = ["BabbleReachEnv", "BabbleReachVectorEnv", "ReachChoices"]
 
 
-class BabbleReachEnv(gymnasium.Env[Any, Any]):
+class ReachChoices(Choices):
+    """The keyword arguments of a reaching environment, checked, and what follows from them."""
+
+    case_options = ("start", "target", "obstacle")
+    envs_per_thread = 64
+    task: _core.ReachTask
+
+    def __init__(
+        self,
+        *,
+        obs: str,
+        control: str,
+        reward: str,
+        body: BodyLike,
+        settled: bool,
+        max_episode_steps: int,
+        render_mode: str | None,
+        **pictures: Any,
+    ) -> None:
+        check_whole("max_episode_steps", max_episode_steps, 1, 1_000_000, "control steps")
+        task = _core.ReachTask(
+            config_json(body),
+            control=control,
+            reward=reward,
+            goal=obs == "goal",
+            settled=settled,
+            # A movement is an episode, whatever limit was registered for other controls.
+            max_episode_steps=1 if control == "pattern" else max_episode_steps,
+            record=render_mode is not None,
+        )
+        super().__init__(task, obs=obs, render_mode=render_mode, **pictures)
+        self.control = control
+
+    def part_of_case(self, name: str, value: Any) -> list[float] | None:
+        """A position (x, y), or the obstacle (x, y, radius) [m]; of (x, y) it has the config's."""
+        if name != "obstacle":
+            return numbers(name, value, 2)
+        if isinstance(value, Sequence | np.ndarray) and len(value) == 2:
+            value = (*value, self.task.obstacle_radius)
+        return numbers(name, value, 3)
+
+    def goal_reward(self, achieved_goal: Any, desired_goal: Any, info: Any) -> Any:
+        """Reward of the goal form for goals (2,) or (..., 2) [m], broadcast; `info` is not used.
+
+        Raises:
+            ConfigError: The goals are not pairs of numbers, or their shapes do not fit.
+        """
+        del info
+        try:
+            achieved, desired = np.broadcast_arrays(
+                np.asarray(achieved_goal, np.float32), np.asarray(desired_goal, np.float32)
+            )
+        except (TypeError, ValueError) as error:
+            raise ConfigError(f"achieved_goal and desired_goal: {error}") from error
+        if achieved.shape[-1:] != (2,):
+            raise ConfigError(f"goals have shape {achieved.shape}, expected (..., 2) [m]")
+        rewards = self.task.goal_reward(achieved.reshape(-1, 2), desired.reshape(-1, 2))
+        return float(rewards[0]) if achieved.ndim == 1 else rewards.reshape(achieved.shape[:-1])
+
+    @property
+    def joint_range(self) -> NDArray[np.float64]:
+        """Widths of the joint ranges (2,) [rad]."""
+        return np.array(self.task.joint_range)
+
+    @property
+    def delta_posture(self) -> float:
+        """Change of an equilibrium point by an action of 1 [rad]."""
+        return self.task.delta_posture
+
+    @property
+    def b_range(self) -> tuple[float, float]:
+        """Lowest and highest b1 and b2."""
+        low, high = self.task.b_range
+        return low, high
+
+
+class BabbleReachEnv(BabbleEnv):
     """Reach a target around an obstacle with a simulated eye-arm-hand.
 
     ## Description
@@ -111,10 +184,8 @@ class BabbleReachEnv(gymnasium.Env[Any, Any]):
     - v0: first.
     """
 
-    metadata: dict[str, Any] = {  # noqa: RUF012 - declared by gymnasium.Env
-        "render_modes": list(RENDER_MODES),
-        "render_fps": 20,
-    }
+    metadata: dict[str, Any] = {**BabbleEnv.metadata, "render_fps": 20}  # noqa: RUF012 - Gymnasium's
+    choices_type = ReachChoices
 
     def __init__(
         self,
@@ -151,160 +222,73 @@ class BabbleReachEnv(gymnasium.Env[Any, Any]):
         Raises:
             ConfigError: An argument or a config field is not one there is.
         """
-        self._arguments: dict[str, Any] = {
-            "obs": obs,
-            "control": control,
-            "reward": reward,
-            "body": body,
-            "settled": settled,
-            "max_episode_steps": max_episode_steps,
-            "render_mode": render_mode,
-            "camera": camera,
-            "width": width,
-            "height": height,
-            "retina_size": retina_size,
-        }
-        self.render_mode = render_mode
-        self._make_core()
-        self.observation_space = self._choices.observation_space
-        self.action_space = self._choices.action_space
-        self.metadata = {**type(self).metadata, "render_fps": self._choices.render_fps}
-        self._seeded = False
-        self._window: Window | None = None
+        super().__init__(
+            render_mode=render_mode,
+            obs=obs,
+            control=control,
+            reward=reward,
+            body=body,
+            settled=settled,
+            max_episode_steps=max_episode_steps,
+            camera=camera,
+            width=width,
+            height=height,
+            retina_size=retina_size,
+        )
 
-    def _make_core(self) -> None:
-        self._choices = ReachChoices(**self._arguments)
-        self._batch = _core.Batch(self._choices.task, 1)
-        self._one = OneEnv(self._choices, self._batch, 0)
 
-    @property
-    def choices(self) -> ReachChoices:
-        """What this environment was made with."""
-        return self._choices
+class BabbleReachVectorEnv(BabbleVectorEnv):
+    """A batch of `BabbleReachEnv`, what `gymnasium.make_vec` makes by default.
 
-    def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Any, dict[str, Any]]:
-        """Begins a new episode.
+    Seeds, autoresets and options: see `BabbleVectorEnv`.
 
-        Args:
-            seed: Starts the stream of cases anew.
-            options: See the class.
+    Args:
+        num_envs: How many environments.
+        render_mode: "rgb_array", "rgb_array_list" or None.
+        autoreset_mode: When an ended episode begins anew.
+        threads: Threads that step the batch; one for each 64 environments, up to the number of
+            processors, if not given. Results do not depend on it.
+        obs, control, reward, body, settled, max_episode_steps, camera, width, height, retina_size:
+            As for `BabbleReachEnv`.
 
-        Raises:
-            ConfigError: An option is unknown.
-            ScenarioError: The case asked for cannot be played. The options are forgotten, and the
-                episode goes on.
-        """
-        request = None if options is None else read_options(options, self._choices.task)
-        super().reset(seed=seed)
-        if seed is not None or not self._seeded:
-            self._batch.seed(0, int(self.np_random.integers(2**63)))
-            self._seeded = True
-        if request is not None:
-            self._batch.request(0, *request)
-        self._batch.reset()
-        self._one.begin()
-        observation, _, _, _, info = self._look()
-        if self.render_mode == "human":
-            self._show()
-        return observation, info
+    Raises:
+        ConfigError: An argument or a config field is not one there is.
+    """
 
-    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        """One control step, or one whole movement in `pattern` control.
+    metadata: dict[str, Any] = {**BabbleVectorEnv.metadata, "render_fps": 20}  # noqa: RUF012 - Gymnasium's
+    choices_type = ReachChoices
 
-        Raises:
-            ActionError: The action is NaN, infinite or of a wrong shape or type.
-            gymnasium.error.ResetNeeded: The episode has ended, or never began.
-        """
-        self._batch.step_one(as_actions(action, (2,)))
-        result = self._look()
-        if self.render_mode == "human":
-            self._show()
-        return result
-
-    def _look(self) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        choices = self._choices
-        senses, reward, terminated, truncated, outcome, success, ever, terms = self._batch.one()
-        goals = self._batch.one_goals() if choices.obs == "goal" else []
-        retina = self._one.retina() if choices.obs == "retina" else None
-        info = {
-            "is_success": success,
-            "ever_success": ever,
-            "outcome": choices.spec.outcomes[outcome],
-            "reward_terms": dict(zip(choices.spec.reward_terms, terms, strict=True)),
-        }
-        return choices.observation(senses, goals, retina), reward, terminated, truncated, info
-
-    @property
-    def compute_reward(self) -> Callable[[Any, Any, Any], Any]:
-        """Reward for achieved and desired goals (2,) or (..., 2) [m], with obs="goal".
-
-        Raises:
-            AttributeError: The observations have no goals; stable-baselines3 goes by this.
-        """
-        if self._choices.obs != "goal":
-            raise AttributeError("compute_reward is there with obs='goal'")
-        return self._choices.goal_reward
-
-    def render(self) -> Any:
-        """A frame (height, width, 3), or the frames since the last call, one a control step.
-
-        In "human" mode the window shows each step by itself and nothing is returned.
-
-        Raises:
-            gymnasium.error.ResetNeeded: There was no reset yet.
-        """
-        if self.render_mode == "human" and self._one.ready:
-            return self._show()
-        return self._one.render()
-
-    def _show(self) -> None:
-        if self._window is None:
-            self._window = Window(self._choices.size, self._choices.render_fps)
-        for frame in self._one.new_frames():
-            self._window.show(frame)
-
-    def close(self) -> None:
-        """Closes the window, if there is one."""
-        if self._window is not None:
-            self._window.close()
-            self._window = None
-
-    def get_state(self) -> bytes:
-        """The whole state, from which `set_state` continues bit for bit."""
-        return self._one.get_state()
-
-    def set_state(self, state: bytes) -> None:
-        """Continues from a state of an environment with the same arguments.
-
-        Raises:
-            SnapshotError: The bytes are not such a state; the environment is as it was.
-        """
-        self._one.set_state(state)
-        self._seeded = True
-
-    def state_hash(self) -> int:
-        """A number that two states share only if they are the same to the bit."""
-        return self._one.state_hash()
-
-    @property
-    def scenario(self) -> dict[str, Any]:
-        """Start, target and obstacle of the running episode [m], as `reset` options."""
-        return self._one.scenario
-
-    @property
-    def trajectory(self) -> NDArray[np.float64]:
-        """The way of the fingertip since the reset (k, 2) [m]; recorded with a render_mode."""
-        return self._one.trajectory
-
-    def __getstate__(self) -> dict[str, Any]:
-        hidden = ("_batch", "_choices", "_one", "_window")
-        state = {k: v for k, v in self.__dict__.items() if k not in hidden}
-        return {"attributes": state, "core": self._one.freeze()}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state["attributes"])
-        self._make_core()
-        self._one.thaw(state["core"])
-        self._window = None
+    def __init__(
+        self,
+        num_envs: int = 1,
+        render_mode: str | None = None,
+        *,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+        threads: int | None = None,
+        obs: str = "senses",
+        control: str = "delta_posture",
+        reward: str = "progress",
+        body: BodyLike = "paper",
+        settled: bool = False,
+        max_episode_steps: int = 240,
+        camera: str = "third_person",
+        width: int = 480,
+        height: int = 480,
+        retina_size: int = 84,
+    ) -> None:
+        super().__init__(
+            num_envs,
+            autoreset_mode=autoreset_mode,
+            threads=threads,
+            render_mode=render_mode,
+            obs=obs,
+            control=control,
+            reward=reward,
+            body=body,
+            settled=settled,
+            max_episode_steps=max_episode_steps,
+            camera=camera,
+            width=width,
+            height=height,
+            retina_size=retina_size,
+        )

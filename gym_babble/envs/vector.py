@@ -1,10 +1,10 @@
-"""Many BabbleReach environments stepped together in the core."""
+"""Many environments of a task stepped together in the core."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from gymnasium.utils.seeding import np_random
@@ -12,25 +12,21 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from gym_babble import _core
+from gym_babble.envs.choices import RENDER_MODES, check_whole
 from gym_babble.envs.one import OneEnv
-from gym_babble.envs.task import RENDER_MODES, ReachChoices, check_whole
 from gym_babble.errors import ConfigError
-from gym_babble.scenarios import Request, read_options
 from gym_babble.spaces import as_actions
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from gym_babble.config import BodyLike
+    from gym_babble.envs.choices import Choices
 
-__all__ = ["BabbleReachVectorEnv"]
-
-ENVS_PER_THREAD = 64
-"""A step of fewer is shorter than waking another thread."""
+__all__ = ["BabbleVectorEnv"]
 
 
-class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
-    """A batch of `BabbleReachEnv`, what `gymnasium.make_vec` makes by default.
+class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
+    """A batch of environments of any task. Each task has a class with its arguments.
 
     Environment i of a batch that is reset with seed s is bit for bit the single environment reset
     with seed s + i, whatever the number of threads. Observations and infos are new arrays at each
@@ -42,71 +38,41 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
     `reset(options={"reset_mask": mask})`. `reset(options={"scenario": [...]})` takes one case for
     all environments or a list with one for each; options hold for autoresets, and a `reset_mask`
     alone leaves them as they are.
-
-    Args:
-        num_envs: How many environments.
-        render_mode: "rgb_array", "rgb_array_list" or None.
-        autoreset_mode: When an ended episode begins anew.
-        threads: Threads that step the batch; one for each 64 environments, up to the number of
-            processors, if not given. Results do not depend on it.
-        obs, control, reward, body, settled, max_episode_steps, camera, width, height, retina_size:
-            As for `BabbleReachEnv`.
-
-    Raises:
-        ConfigError: An argument or a config field is not one there is.
     """
 
     metadata: dict[str, Any] = {  # noqa: RUF012 - declared by VectorEnv
         "render_modes": list(RENDER_MODES[1:]),
-        "render_fps": 20,
         "autoreset_mode": AutoresetMode.NEXT_STEP,
     }
+    choices_type: ClassVar[type[Choices]]
+    """What checks the arguments."""
 
     def __init__(
         self,
-        num_envs: int = 1,
-        render_mode: str | None = None,
+        num_envs: int,
         *,
-        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
-        threads: int | None = None,
-        obs: str = "senses",
-        control: str = "delta_posture",
-        reward: str = "progress",
-        body: BodyLike = "paper",
-        settled: bool = False,
-        max_episode_steps: int = 240,
-        camera: str = "third_person",
-        width: int = 480,
-        height: int = 480,
-        retina_size: int = 84,
+        autoreset_mode: AutoresetMode | str,
+        threads: int | None,
+        **arguments: Any,
     ) -> None:
-        if render_mode == "human":
+        if arguments["render_mode"] == "human":
             raise ConfigError("render_mode = 'human' shows one environment; use gymnasium.make")
-        self._arguments: dict[str, Any] = {
-            "obs": obs,
-            "control": control,
-            "reward": reward,
-            "body": body,
-            "settled": settled,
-            "max_episode_steps": max_episode_steps,
-            "render_mode": render_mode,
-            "camera": camera,
-            "width": width,
-            "height": height,
-            "retina_size": retina_size,
-        }
+        self._arguments = arguments
+        self.render_mode = arguments["render_mode"]
         check_whole("num_envs", num_envs, 1, 1_000_000, "environments")
         self.num_envs = num_envs
-        self.render_mode = render_mode
         self._autoreset = _autoreset_mode(autoreset_mode)
-        self._threads = threads if threads is not None else default_threads(num_envs)
-        check_whole("threads", self._threads, 1, 1024, "threads")
+        if threads is None:
+            threads = default_threads(num_envs, self.choices_type.envs_per_thread)
+        check_whole("threads", threads, 1, 1024, "threads")
+        self._threads = threads
         self._make_core()
         choices = self._choices
         self.single_observation_space = choices.observation_space
         self.single_action_space = choices.action_space
         self.observation_space = batch_space(choices.observation_space, num_envs)
         self.action_space = batch_space(choices.action_space, num_envs)
+        self._shape = (num_envs, *choices.action_space.shape)
         self.metadata = {
             **type(self).metadata,
             "render_fps": choices.render_fps,
@@ -115,7 +81,7 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
         self._seeded = False
 
     def _make_core(self) -> None:
-        self._choices = ReachChoices(**self._arguments)
+        self._choices = self.choices_type(**self._arguments)
         self._batch = _core.Batch(
             self._choices.task,
             self.num_envs,
@@ -125,7 +91,7 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
         self._ones = [OneEnv(self._choices, self._batch, i) for i in range(self.num_envs)]
 
     @property
-    def choices(self) -> ReachChoices:
+    def choices(self) -> Choices:
         """What this environment was made with."""
         return self._choices
 
@@ -144,7 +110,7 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
 
         Args:
             seed: s seeds environment i with s + i; a list has one seed for each.
-            options: As for `BabbleReachEnv`, and `reset_mask`.
+            options: As for the single environment, and `reset_mask`.
 
         Raises:
             ConfigError: An option is unknown or of a wrong length.
@@ -156,7 +122,7 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
         chosen = np.flatnonzero(mask).tolist()
         if requests is not None:
             for i in chosen:
-                self._batch.request(i, *requests[i])
+                self._batch.request(i, requests[i])
         self._batch.reset(mask.tolist())
         for i in chosen:
             self._ones[i].begin()
@@ -166,13 +132,13 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
     def step(
         self, actions: Any
     ) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
-        """One control step, or one whole movement, of every environment.
+        """One step of every environment.
 
         Raises:
             ActionError: An action is NaN, infinite or of a wrong shape or type.
             gymnasium.error.ResetNeeded: An environment has to be reset first. Nothing was stepped.
         """
-        self._batch.step(as_actions(actions, (self.num_envs, 2)))
+        self._batch.step(as_actions(actions, self._shape))
         shown = self._batch.all()
         infos = self._infos(shown, np.ones(self.num_envs, np.bool_))
         if self._autoreset is AutoresetMode.SAME_STEP:
@@ -180,7 +146,7 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
         observation = self._observation(shown)
         return observation, shown["reward"], shown["terminated"], shown["truncated"], infos
 
-    def _read_options(self, options: Any) -> tuple[NDArray[np.bool_], list[Request] | None]:
+    def _read_options(self, options: Any) -> tuple[NDArray[np.bool_], list[dict[str, Any]] | None]:
         """Which environments to reset, and what to ask of the cases of each."""
         everywhere = np.ones(self.num_envs, np.bool_)
         if options is None:
@@ -225,16 +191,15 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
             self._batch.seed(i, stream)
         self._seeded = True
 
-    def _requests(self, options: Any) -> list[Request]:
-        task = self._choices.task
+    def _requests(self, options: Any) -> list[dict[str, Any]]:
         cases = options.get("scenario") if isinstance(options, Mapping) else None
         if not isinstance(cases, Sequence) or isinstance(cases, str):
-            return [read_options(options, task)] * self.num_envs
+            return [self._choices.request(options)] * self.num_envs
         if len(cases) != self.num_envs:
             raise ConfigError(
                 f"options['scenario'] has {len(cases)} cases, expected one or {self.num_envs}"
             )
-        return [read_options({**options, "scenario": case}, task) for case in cases]
+        return [self._choices.request({**options, "scenario": case}) for case in cases]
 
     def _observation(self, shown: Mapping[str, Any]) -> Any:
         goals = [shown["achieved_goal"], shown["desired_goal"]]
@@ -250,16 +215,15 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
         for k, name in enumerate(spec.reward_terms):
             terms[name] = np.where(mask, shown["terms"][:, k], 0.0)
             terms[f"_{name}"] = mask.copy()
-        return {
-            "is_success": shown["is_success"] & mask,
-            "_is_success": mask.copy(),
-            "ever_success": shown["ever_success"] & mask,
-            "_ever_success": mask.copy(),
-            "outcome": np.where(mask, self._choices.outcomes[shown["outcome"]], None),
-            "_outcome": mask.copy(),
-            "reward_terms": terms,
-            "_reward_terms": mask.copy(),
-        }
+        infos: dict[str, Any] = {}
+        for k, name in enumerate(spec.facts):
+            infos[name] = shown["facts"][:, k] & mask
+            infos[f"_{name}"] = mask.copy()
+        infos["outcome"] = np.where(mask, self._choices.outcomes[shown["outcome"]], None)
+        infos["_outcome"] = mask.copy()
+        infos["reward_terms"] = terms
+        infos["_reward_terms"] = mask.copy()
+        return infos
 
     def _add_final(self, infos: dict[str, Any]) -> None:
         """Adds `final_obs` and `final_info` of the episodes that ended within the step."""
@@ -268,8 +232,8 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
             return
         indices, last = ended
         goals = (last["achieved_goal"], last["desired_goal"])
-        names = self._choices.spec.reward_terms
-        for name in names:
+        spec, outcomes = self._choices.spec, self._choices.outcomes
+        for name in spec.reward_terms:
             # The new episodes have had no reward yet; what the step gave stands in `final_info`.
             infos["reward_terms"][name][indices] = 0.0
         for k, i in enumerate(indices.tolist()):
@@ -277,12 +241,10 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
             if self._choices.obs == "retina":
                 size = self._choices.retina_size
                 retina = self._batch.retina_ended(i, size)
-            info = {
-                "is_success": bool(last["is_success"][k]),
-                "ever_success": bool(last["ever_success"][k]),
-                "outcome": self._choices.spec.outcomes[last["outcome"][k]],
-                "reward_terms": dict(zip(names, last["terms"][k].tolist(), strict=True)),
-            }
+            info = dict(zip(spec.facts, last["facts"][k].tolist(), strict=True))
+            info["outcome"] = outcomes[last["outcome"][k]]
+            terms = last["terms"][k].tolist()
+            info["reward_terms"] = dict(zip(spec.reward_terms, terms, strict=True))
             final = {
                 "final_obs": self._choices.observation(
                     last["senses"][k], [goal[k] for goal in goals], retina
@@ -392,13 +354,13 @@ class BabbleReachVectorEnv(VectorEnv[Any, Any, Any]):
             one.thaw(core)
 
 
-def default_threads(num_envs: int) -> int:
-    """One thread for each 64 environments, up to the processors this process may use."""
+def default_threads(num_envs: int, envs_per_thread: int) -> int:
+    """As many as have enough environments each, up to the processors this process may use."""
     if hasattr(os, "sched_getaffinity"):
         processors = len(os.sched_getaffinity(0))
     else:
         processors = os.cpu_count() or 1
-    return max(1, min(processors, num_envs // ENVS_PER_THREAD))
+    return max(1, min(processors, num_envs // envs_per_thread))
 
 
 def _autoreset_mode(mode: AutoresetMode | str) -> AutoresetMode:

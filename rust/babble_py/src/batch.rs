@@ -1,155 +1,179 @@
-//! n environments as one Python object.
+//! n environments of any task as one Python object.
 
 use babble_env::batch::Record;
 use babble_env::picture::View;
-use babble_env::reach::case::{CaseRequest, ObstacleRequest};
-use babble_env::reach::{EVER_SUCCESS, IS_SUCCESS};
-use babble_env::{Autoreset, EnvError, ReachTask, Task as _, snapshot};
+use babble_env::{Autoreset, EnvError, Task, snapshot};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArrayDyn};
+use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyTuple};
+use pyo3::types::{PyBytes, PyDict, PyString, PyTuple};
 
-use crate::task::Task;
-use crate::{convert, errors};
+use crate::convert::{PyTask, table};
+use crate::errors;
+use crate::reach::ReachTask;
 
 /// Indices of the environments whose episode ended, and what those episodes showed last.
 type Ended<'py> = (Bound<'py, PyArray1<usize>>, Bound<'py, PyDict>);
+
+/// A task of Python's.
+#[derive(FromPyObject)]
+enum AnyTask<'py> {
+    Reach(Bound<'py, ReachTask>),
+}
+
+/// A batch of whichever task.
+#[derive(Debug)]
+enum AnyBatch {
+    Reach(babble_env::Batch<babble_env::ReachTask>),
+}
+
+/// The value of an expression about the batch, whichever its task.
+macro_rules! with {
+    ($any:expr, $batch:ident => $value:expr) => {
+        match $any {
+            AnyBatch::Reach($batch) => $value,
+        }
+    };
+}
 
 /// A batch of n episodes, stepped together.
 #[pyclass(module = "gym_babble._core")]
 #[derive(Debug)]
 pub(crate) struct Batch {
-    batch: babble_env::Batch<ReachTask>,
-    terms: usize,
+    envs: AnyBatch,
+    senses: usize,
+    /// Names of the facts.
+    facts: Vec<Py<PyString>>,
+    /// Names of the reward terms.
+    terms: Vec<Py<PyString>>,
 }
 
 #[pymethods]
 impl Batch {
     #[new]
     #[pyo3(signature = (task, num_envs=1, *, autoreset="Disabled", threads=1))]
-    fn new(task: &Task, num_envs: usize, autoreset: &str, threads: usize) -> PyResult<Self> {
-        let make = || {
-            let autoreset = autoreset.parse::<Autoreset>()?;
-            babble_env::Batch::new(task.task.clone(), num_envs, autoreset, threads)
+    fn new(
+        py: Python<'_>,
+        task: AnyTask<'_>,
+        num_envs: usize,
+        autoreset: &str,
+        threads: usize,
+    ) -> PyResult<Self> {
+        let autoreset = autoreset.parse::<Autoreset>().map_err(errors::env)?;
+        let envs = match task {
+            AnyTask::Reach(task) => {
+                let task = task.get().task.clone();
+                babble_env::Batch::new(task, num_envs, autoreset, threads).map(AnyBatch::Reach)
+            }
         };
-        let terms = task.task.spec().reward_terms.len();
+        let envs = envs.map_err(errors::env)?;
+        let (senses, spec) =
+            with!(&envs, batch => (batch.task().senses_len(), batch.task().spec()));
+        let names = |names: &[&str]| {
+            let name = |name: &&str| PyString::intern(py, name).unbind();
+            names.iter().map(name).collect()
+        };
         Ok(Self {
-            batch: make().map_err(errors::env)?,
-            terms,
+            envs,
+            senses,
+            facts: names(spec.facts),
+            terms: names(spec.reward_terms),
         })
     }
 
     /// Starts the stream of cases of environment `i` anew.
     fn seed(&mut self, i: usize, seed: u64) -> PyResult<()> {
-        self.batch.seed(i, seed).map_err(errors::env)
+        with!(&mut self.envs, batch => batch.seed(i, seed)).map_err(errors::env)
     }
 
-    /// What the following resets of environment `i` ask of their cases; None is drawn.
-    ///
-    /// `obstacle` is (x, y, radius) \[m\]; `no_obstacle` asks that there is none.
-    #[pyo3(signature = (i, start=None, target=None, obstacle=None, no_obstacle=false))]
-    fn request(
-        &mut self,
-        i: usize,
-        start: Option<[f64; 2]>,
-        target: Option<[f64; 2]>,
-        obstacle: Option<[f64; 3]>,
-        no_obstacle: bool,
-    ) -> PyResult<()> {
-        let obstacle = match obstacle {
-            _ if no_obstacle => ObstacleRequest::Absent,
-            Some(obstacle) => ObstacleRequest::At(convert::obstacle(obstacle)),
-            None => ObstacleRequest::Halfway,
-        };
-        self.batch
-            .request(
-                i,
-                CaseRequest {
-                    start,
-                    target,
-                    obstacle,
-                },
-            )
-            .map_err(errors::env)
+    /// What the following resets of environment `i` ask of their cases, in the task's own words.
+    fn request(&mut self, i: usize, asked: &Bound<'_, PyDict>) -> PyResult<()> {
+        with!(&mut self.envs, batch => request(batch, i, asked))
     }
 
     /// Begins new episodes where `mask` is true; in all environments without one.
     #[pyo3(signature = (mask=None))]
     fn reset(&mut self, py: Python<'_>, mask: Option<Vec<bool>>) -> PyResult<()> {
-        let mask = mask.unwrap_or_else(|| vec![true; self.batch.len()]);
-        if mask.len() != self.batch.len() {
+        let n = with!(&self.envs, batch => batch.len());
+        let mask = mask.unwrap_or_else(|| vec![true; n]);
+        if mask.len() != n {
             return Err(errors::env(EnvError::OutOfBounds {
                 option: "reset_mask",
                 value: format!("{} numbers", mask.len()),
-                bound: format!("of length {}", self.batch.len()),
+                bound: format!("of length {n}"),
             }));
         }
-        py.detach(|| self.batch.reset(&mask)).map_err(errors::env)
+        py.detach(|| with!(&mut self.envs, batch => batch.reset(&mask)))
+            .map_err(errors::env)
     }
 
-    /// One step of all environments; `actions` holds two numbers for each.
+    /// One step of all environments; `actions` (n, k).
     fn step(&mut self, py: Python<'_>, actions: PyReadonlyArrayDyn<'_, f32>) -> PyResult<()> {
         let actions: Vec<f32> = actions.as_array().iter().copied().collect();
-        py.detach(|| self.batch.step(&actions)).map_err(errors::env)
+        py.detach(|| with!(&mut self.envs, batch => batch.step(&actions)))
+            .map_err(errors::env)
     }
 
     /// One step of a batch of one, without letting go of the interpreter, as it takes microseconds.
     fn step_one(&mut self, actions: PyReadonlyArrayDyn<'_, f32>) -> PyResult<()> {
+        let mut step = |actions: &[f32]| with!(&mut self.envs, batch => batch.step(actions));
         match actions.as_slice() {
-            Ok(actions) => self.batch.step(actions),
-            Err(_) => self
-                .batch
-                .step(&actions.as_array().iter().copied().collect::<Vec<_>>()),
+            Ok(actions) => step(actions),
+            Err(_) => step(&actions.as_array().iter().copied().collect::<Vec<_>>()),
         }
         .map_err(errors::env)
     }
 
-    /// What environment 0 showed last: (senses (11,), reward, terminated, truncated, outcome code,
-    /// `is_success`, `ever_success`, reward terms).
+    /// What environment 0 showed last: (senses, reward, terminated, truncated, info).
     fn one<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        let Some(record) = self.batch.records().next() else {
+        let Some(Record {
+            senses,
+            standing,
+            step,
+        }) = self.first()
+        else {
             return Ok(PyTuple::empty(py));
         };
-        let step = &record.step;
+        let info = named(py, &self.facts, &standing.facts)?;
+        info.set_item(intern!(py, "outcome"), standing.outcome.name())?;
+        let terms = named(py, &self.terms, &step.terms)?;
+        info.set_item(intern!(py, "reward_terms"), terms)?;
         (
-            PyArray1::from_slice(py, &record.senses),
+            PyArray1::from_slice(py, senses),
             step.reward,
             step.terminated,
             step.truncated,
-            record.standing.outcome as usize,
-            record.standing.facts[IS_SUCCESS],
-            record.standing.facts[EVER_SUCCESS],
-            PyTuple::new(py, &step.terms[..self.terms])?,
+            info,
         )
             .into_pyobject(py)
     }
 
     /// Achieved and desired goal of environment 0 (2,) \[m\].
     fn one_goals<'py>(&self, py: Python<'py>) -> Vec<Bound<'py, PyArray1<f32>>> {
-        let record = self.batch.records().next();
-        record.map_or_else(Vec::new, |r| {
-            [r.standing.achieved, r.standing.desired]
+        self.first().map_or_else(Vec::new, |record| {
+            [record.standing.achieved, record.standing.desired]
                 .map(|x| PyArray1::from_slice(py, &x))
                 .into()
         })
     }
 
     /// What all environments showed last, in new arrays of length n: senses, achieved goals, desired
-    /// goals, rewards, terminated, truncated, outcome codes, `is_success`, `ever_success`, terms.
+    /// goals, rewards, terminated, truncated, outcome codes, facts, reward terms.
     fn all<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let records: Vec<&Record> = self.batch.records().collect();
-        self.arrays(py, &records)
+        self.arrays(
+            py,
+            &with!(&self.envs, batch => batch.records().collect::<Vec<_>>()),
+        )
     }
 
     /// The same for the episodes that ended within the last step and were begun anew, and their
     /// indices; None if there are none.
     fn ended<'py>(&self, py: Python<'py>) -> PyResult<Option<Ended<'py>>> {
-        let ended: Vec<(usize, &Record)> = self
-            .batch
+        let ended: Vec<(usize, &Record)> = with!(&self.envs, batch => batch
             .last()
             .enumerate()
             .filter_map(|(i, last)| Some((i, &last?.record)))
-            .collect();
+            .collect());
         if ended.is_empty() {
             return Ok(None);
         }
@@ -162,40 +186,39 @@ impl Batch {
 
     /// Bytes from which environment `i` continues bit for bit.
     fn save<'py>(&self, py: Python<'py>, i: usize) -> PyResult<Bound<'py, PyBytes>> {
-        Ok(PyBytes::new(py, &self.batch.save(i).map_err(errors::env)?))
+        let bytes = with!(&self.envs, batch => batch.save(i)).map_err(errors::env)?;
+        Ok(PyBytes::new(py, &bytes))
     }
 
     /// Continues environment `i` from bytes.
     fn load(&mut self, i: usize, bytes: &[u8]) -> PyResult<()> {
-        self.batch.load(i, bytes).map_err(errors::env)
+        with!(&mut self.envs, batch => batch.load(i, bytes)).map_err(errors::env)
     }
 
     /// A number that two states share only if they are the same to the bit.
     fn state_hash(&self, i: usize) -> PyResult<u64> {
-        let hash = |state| snapshot::hash(&**self.batch.task(), state);
-        self.batch.state(i).and_then(hash).map_err(errors::env)
+        with!(&self.envs, batch => {
+            batch.state(i).and_then(|state| snapshot::hash(&**batch.task(), state))
+        })
+        .map_err(errors::env)
     }
 
-    /// Start, target and obstacle of environment `i`.
+    /// The case of environment `i`, in the task's own words.
     fn case<'py>(&self, py: Python<'py>, i: usize) -> PyResult<Bound<'py, PyDict>> {
-        convert::case(py, &self.batch.state(i).map_err(errors::env)?.case)
+        with!(&self.envs, batch => case(py, batch, i))
     }
 
-    /// Joint angles (2,) \[rad\] of environment `i`.
-    fn posture(&self, i: usize) -> PyResult<[f64; 2]> {
-        Ok(self.batch.state(i).map_err(errors::env)?.arm.q)
-    }
-
-    /// Recorded ways of the fingertip of environment `i` (k, 2) \[m\].
+    /// The recorded way of the hand of environment `i`, one row a control step \[m\].
     fn trail<'py>(&self, py: Python<'py>, i: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let state = self.batch.state(i).map_err(errors::env)?;
-        let arm = &self.batch.task().arm;
-        let tips: Vec<[f64; 2]> = state
-            .trail
-            .iter()
-            .map(|&q| arm.fingertip(q).into())
-            .collect();
-        convert::array2(py, &tips)
+        with!(&self.envs, batch => {
+            batch.task().trail(py, batch.state(i).map_err(errors::env)?)
+        })
+    }
+
+    /// How many moments of environment `i` were recorded since its reset.
+    fn moments(&self, i: usize) -> PyResult<usize> {
+        with!(&self.envs, batch => batch.state(i).map(|state| batch.task().moments(state)))
+            .map_err(errors::env)
     }
 
     /// A picture (height, width, 3) of environment `i`, now or at a recorded moment.
@@ -210,10 +233,10 @@ impl Batch {
         frame: Option<usize>,
     ) -> PyResult<Bound<'py, PyArray3<u8>>> {
         let draw = || {
-            let state = self.batch.state(i)?;
-            self.batch
-                .task()
-                .picture(state, camera.parse::<View>()?, [width, height], frame)
+            let view = camera.parse::<View>()?;
+            with!(&self.envs, batch => {
+                batch.task().picture(batch.state(i)?, view, [width, height], frame)
+            })
         };
         let image = py.detach(draw).map_err(errors::env)?;
         PyArray1::from_vec(py, image.into_raw()).reshape([height as usize, width as usize, 3])
@@ -227,12 +250,15 @@ impl Batch {
         i: usize,
         size: u32,
     ) -> PyResult<Option<Bound<'py, PyArray3<u8>>>> {
-        let Some(last) = self.batch.last().nth(i).flatten() else {
+        let draw = || {
+            with!(&self.envs, batch => {
+                let last = batch.last().nth(i).flatten();
+                last.map(|last| batch.task().picture(&last.state, View::Eye, [size; 2], None))
+            })
+        };
+        let Some(image) = py.detach(draw).transpose().map_err(errors::env)? else {
             return Ok(None);
         };
-        let task = self.batch.task();
-        let draw = || task.picture(&last.state, View::Eye, [size; 2], None);
-        let image = py.detach(draw).map_err(errors::env)?;
         let shape = [size as usize, size as usize, 3];
         PyArray1::from_vec(py, image.into_raw())
             .reshape(shape)
@@ -242,59 +268,67 @@ impl Batch {
     /// Threads that step the batch.
     #[getter]
     fn threads(&self) -> usize {
-        self.batch.threads()
+        with!(&self.envs, batch => batch.threads())
     }
 }
 
 impl Batch {
+    fn first(&self) -> Option<&Record> {
+        with!(&self.envs, batch => batch.records().next())
+    }
+
     fn arrays<'py>(&self, py: Python<'py>, records: &[&Record]) -> PyResult<Bound<'py, PyDict>> {
         let each = || records.iter();
-        let terms: Vec<f64> = each()
-            .flat_map(|r| r.step.terms[..self.terms].iter().copied())
-            .collect();
         let dict = PyDict::new(py);
-        let senses: Vec<&[f32]> = each().map(|r| &r.senses[..]).collect();
-        let senses = PyArray1::from_vec(py, senses.concat());
-        dict.set_item(
-            "senses",
-            senses.reshape([records.len(), self.batch.task().senses_len()])?,
-        )?;
-        dict.set_item(
-            "achieved_goal",
-            convert::array2(py, &each().map(|r| r.standing.achieved).collect::<Vec<_>>())?,
-        )?;
-        dict.set_item(
-            "desired_goal",
-            convert::array2(py, &each().map(|r| r.standing.desired).collect::<Vec<_>>())?,
-        )?;
-        dict.set_item(
-            "reward",
-            PyArray1::from_iter(py, each().map(|r| r.step.reward)),
-        )?;
-        dict.set_item(
-            "terminated",
-            PyArray1::from_iter(py, each().map(|r| r.step.terminated)),
-        )?;
-        dict.set_item(
-            "truncated",
-            PyArray1::from_iter(py, each().map(|r| r.step.truncated)),
-        )?;
-        dict.set_item(
-            "outcome",
-            PyArray1::from_iter(py, each().map(|r| r.standing.outcome as usize)),
-        )?;
-        dict.set_item(
-            "is_success",
-            PyArray1::from_iter(py, each().map(|r| r.standing.facts[IS_SUCCESS])),
-        )?;
-        dict.set_item(
-            "ever_success",
-            PyArray1::from_iter(py, each().map(|r| r.standing.facts[EVER_SUCCESS])),
-        )?;
-        dict.set_item(
-            "terms",
-            PyArray1::from_vec(py, terms).reshape([records.len(), self.terms])?,
-        )?;
+        let senses = table(py, self.senses, each().map(|r| &r.senses[..]))?;
+        dict.set_item("senses", senses)?;
+        let achieved = table(py, 2, each().map(|r| &r.standing.achieved[..]))?;
+        dict.set_item("achieved_goal", achieved)?;
+        let desired = table(py, 2, each().map(|r| &r.standing.desired[..]))?;
+        dict.set_item("desired_goal", desired)?;
+        let reward = PyArray1::from_iter(py, each().map(|r| r.step.reward));
+        dict.set_item("reward", reward)?;
+        let terminated = PyArray1::from_iter(py, each().map(|r| r.step.terminated));
+        dict.set_item("terminated", terminated)?;
+        let truncated = PyArray1::from_iter(py, each().map(|r| r.step.truncated));
+        dict.set_item("truncated", truncated)?;
+        let outcome = PyArray1::from_iter(py, each().map(|r| r.standing.outcome as usize));
+        dict.set_item("outcome", outcome)?;
+        let n = self.facts.len();
+        let facts = table(py, n, each().map(|r| &r.standing.facts[..n]))?;
+        dict.set_item("facts", facts)?;
+        let n = self.terms.len();
+        let terms = table(py, n, each().map(|r| &r.step.terms[..n]))?;
+        dict.set_item("terms", terms)?;
         Ok(dict)
     }
+}
+
+/// Values by name.
+fn named<'py, T: IntoPyObject<'py> + Copy>(
+    py: Python<'py>,
+    names: &[Py<PyString>],
+    values: &[T],
+) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    for (name, &value) in names.iter().zip(values) {
+        dict.set_item(name, value)?;
+    }
+    Ok(dict)
+}
+
+fn request<T: PyTask>(
+    batch: &mut babble_env::Batch<T>,
+    i: usize,
+    asked: &Bound<'_, PyDict>,
+) -> PyResult<()> {
+    batch.request(i, T::request(asked)?).map_err(errors::env)
+}
+
+fn case<'py, T: PyTask>(
+    py: Python<'py>,
+    batch: &babble_env::Batch<T>,
+    i: usize,
+) -> PyResult<Bound<'py, PyDict>> {
+    T::case(py, batch.state(i).map_err(errors::env)?)
 }

@@ -1,25 +1,27 @@
-//! Between numpy arrays and Rust values.
+//! Between Python's and Rust's values.
 
-use babble_body::Obstacle;
-use babble_env::reach::SENSES;
-use babble_env::{EnvError, ReachCase};
+use babble_env::task::{Request, State};
+use babble_env::{EnvError, Task};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::errors;
 
-/// Rows of flat observations in a (n, 11) array.
-pub(crate) fn senses(array: &PyReadonlyArray2<'_, f32>) -> PyResult<Vec<[f32; SENSES]>> {
-    let senses = rows(array, "senses")?;
-    match senses.iter().flatten().find(|x| !x.is_finite()) {
-        Some(x) => Err(errors::env(EnvError::OutOfBounds {
-            option: "senses",
-            value: x.to_string(),
-            bound: "finite".to_owned(),
-        })),
-        None => Ok(senses),
-    }
+/// What each task says in dicts and arrays of its own.
+pub(crate) trait PyTask: Task {
+    /// What a dict asks of the cases to come; what it does not have is drawn.
+    fn request(asked: &Bound<'_, PyDict>) -> PyResult<Request<Self>>;
+
+    /// The case as the dict that `reset(options=...)` takes.
+    fn case<'py>(py: Python<'py>, state: &State<Self>) -> PyResult<Bound<'py, PyDict>>;
+
+    /// The recorded way of the hand, one row a control step \[m\].
+    fn trail<'py>(
+        &self,
+        py: Python<'py>,
+        state: &State<Self>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>>;
 }
 
 /// Rows of N numbers in a (n, N) array.
@@ -51,21 +53,14 @@ pub(crate) fn array2<'py, T: numpy::Element + Copy, const N: usize>(
     PyArray1::from_slice(py, rows.as_flattened()).reshape([rows.len(), N])
 }
 
-/// A case as the dict that `reset(options=...)` takes: `start`, `target` (x, y) \[m\] and
-/// `obstacle` (x, y, radius) \[m\] or None.
-pub(crate) fn case<'py>(py: Python<'py>, case: &ReachCase) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
-    dict.set_item("start", (case.hand[0], case.hand[1]))?;
-    dict.set_item("target", (case.target[0], case.target[1]))?;
-    let obstacle = case.obstacle.map(|o| (o.centre.x, o.centre.y, o.radius));
-    dict.set_item("obstacle", obstacle)?;
-    Ok(dict)
-}
-
-/// An obstacle from (x, y, radius) \[m\].
-pub(crate) fn obstacle([x, y, radius]: [f64; 3]) -> Obstacle {
-    Obstacle {
-        centre: [x, y].into(),
-        radius,
-    }
+/// A (n, width) array of n rows.
+pub(crate) fn table<'py, 'a, T: numpy::Element + Copy + 'a>(
+    py: Python<'py>,
+    width: usize,
+    rows: impl ExactSizeIterator<Item = &'a [T]>,
+) -> PyResult<Bound<'py, PyArray2<T>>> {
+    let n = rows.len();
+    let mut all = Vec::with_capacity(n * width);
+    rows.for_each(|row| all.extend_from_slice(row));
+    PyArray1::from_vec(py, all).reshape([n, width])
 }

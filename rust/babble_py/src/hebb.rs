@@ -2,13 +2,13 @@
 
 use babble_agent::store::{self, Metadata};
 use babble_agent::{Babbling, HebbConfig, Variant};
-use babble_env::{Config, Pool, ReachTask};
+use babble_env::{Config, Pool};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
-use crate::task::{Task, fidelity};
-use crate::{convert, errors};
+use crate::reach::{ReachTask, fidelity};
+use crate::{convert, errors, reach};
 
 /// Experiences that are learnt together.
 const CHUNK: usize = 256;
@@ -53,8 +53,8 @@ impl Hebb {
     }
 
     /// Babbles on `task` until `legal` more movements were legal, and learns from them.
-    fn learn(&mut self, py: Python<'_>, task: &Task, legal: usize) -> PyResult<()> {
-        let task: &ReachTask = &task.task;
+    fn learn(&mut self, py: Python<'_>, task: &ReachTask, legal: usize) -> PyResult<()> {
+        let task: &babble_env::ReachTask = &task.task;
         py.detach(|| {
             let experiences = self.babbling.experience(task, legal, &mut self.pool)?;
             let network = &mut self.network;
@@ -73,7 +73,7 @@ impl Hebb {
         py: Python<'py>,
         senses: PyReadonlyArray2<'py, f32>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let senses = convert::senses(&senses)?;
+        let senses = reach::rows_of_senses(&senses)?;
         let decide = |s: &[f32; 11]| self.network.decide([s[0], s[1]], [s[2], s[3]]);
         let b: Vec<[f64; 2]> = py
             .detach(|| senses.iter().map(decide).collect::<Result<_, _>>())

@@ -5,10 +5,11 @@
 
 mod batch;
 mod brain;
+mod config;
 mod convert;
 mod errors;
 mod hebb;
-mod task;
+mod reach;
 
 use pyo3::prelude::*;
 
@@ -20,9 +21,11 @@ mod _core {
     #[pymodule_export]
     use crate::brain::{Association, PopulationMap, generator_curve};
     #[pymodule_export]
+    use crate::config::{complete_config, load_config, outcomes, profile_config, profiles};
+    #[pymodule_export]
     use crate::hebb::Hebb;
     #[pymodule_export]
-    use crate::task::{Task, complete_config, load_config, profile_config, profiles};
+    use crate::reach::ReachTask;
     use pyo3::prelude::*;
 
     #[pymodule_init]

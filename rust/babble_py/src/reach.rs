@@ -1,61 +1,30 @@
-//! Configs and everything that needs a task but no episode.
+//! The reaching task: everything that needs no episode.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use babble_agent::reference;
+use babble_body::Obstacle;
+use babble_env::reach::case::{CaseRequest, ObstacleRequest};
 use babble_env::reach::movement::{Fidelity, MovementPath};
-use babble_env::reach::{SENSES, goal_reward, protocol};
-use babble_env::{
-    Config, Control, EnvError, Options, Pool, Purpose, ReachCase, ReachTask, Reward, Task as _,
-    config,
-};
+use babble_env::reach::{ReachState, SENSES, goal_reward, protocol};
+use babble_env::{Config, Control, EnvError, Options, Pool, Purpose, ReachCase, Reward, Task as _};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
 
-use crate::{convert, errors};
-
-/// Names of the body profiles.
-#[pyfunction]
-pub(crate) fn profiles() -> Vec<&'static str> {
-    config::PROFILES.to_vec()
-}
-
-/// The config of a profile, as JSON.
-#[pyfunction]
-pub(crate) fn profile_config(name: &str) -> PyResult<String> {
-    Config::profile(name)
-        .and_then(|config| config.to_json())
-        .map_err(errors::env)
-}
-
-/// The config in a TOML or JSON file, completed and checked, as JSON.
-#[pyfunction]
-pub(crate) fn load_config(path: PathBuf) -> PyResult<String> {
-    Config::from_file(&path)
-        .and_then(|config| config.to_json())
-        .map_err(errors::env)
-}
-
-/// A JSON config, completed from its profile and checked.
-#[pyfunction]
-pub(crate) fn complete_config(text: &str) -> PyResult<String> {
-    Config::from_json(text)
-        .and_then(|config| config.to_json())
-        .map_err(errors::env)
-}
+use crate::convert::{self, PyTask};
+use crate::errors;
 
 /// The reaching task: a config and the choices made with it.
 #[pyclass(frozen, module = "gym_babble._core")]
 #[derive(Debug)]
-pub(crate) struct Task {
-    pub(crate) task: Arc<ReachTask>,
+pub(crate) struct ReachTask {
+    pub(crate) task: Arc<babble_env::ReachTask>,
 }
 
 #[pymethods]
-impl Task {
+impl ReachTask {
     #[new]
     #[pyo3(signature = (config, *, control="delta_posture", reward="progress", goal=false, settled=false, max_episode_steps=240, record=false))]
     fn new(
@@ -76,7 +45,7 @@ impl Task {
                 max_episode_steps,
                 record,
             };
-            ReachTask::new(Config::from_json(config)?, options)
+            babble_env::ReachTask::new(Config::from_json(config)?, options)
         };
         Ok(Self {
             task: Arc::new(make().map_err(errors::env)?),
@@ -133,7 +102,7 @@ impl Task {
         let cases = py
             .detach(|| protocol::table1(&self.task, n, seed, purpose, &mut Pool::new(threads)?))
             .map_err(errors::env)?;
-        cases.iter().map(|case| convert::case(py, case)).collect()
+        cases.iter().map(|case| case_dict(py, case)).collect()
     }
 
     /// Cases of Fig. 4: 4 targets × 36 starts, None where there is no case.
@@ -141,11 +110,7 @@ impl Task {
         let cases = protocol::fig4(&self.task);
         cases
             .iter()
-            .map(|case| {
-                case.as_ref()
-                    .map(|case| convert::case(py, case))
-                    .transpose()
-            })
+            .map(|case| case.as_ref().map(|case| case_dict(py, case)).transpose())
             .collect()
     }
 
@@ -164,9 +129,10 @@ impl Task {
         quasi_static: bool,
     ) -> PyResult<Bound<'py, PyDict>> {
         let task = &self.task;
+        let placed = obstacle.map(obstacle_from);
         let mut postures = Vec::new();
         let mut play = || {
-            let case = ReachCase::chosen(task, start, target, obstacle.map(convert::obstacle))?;
+            let case = ReachCase::chosen(task, start, target, placed)?;
             postures.push(case.start);
             let fidelity = fidelity(quasi_static);
             let movement = MovementPath::new(task, &case, b)?
@@ -225,7 +191,7 @@ impl Task {
         b: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Bound<'py, numpy::PyArray3<f32>>> {
         use numpy::PyArrayMethods;
-        let (senses, b) = (convert::senses(&senses)?, convert::rows::<f64, 2>(&b, "b")?);
+        let (senses, b) = (rows_of_senses(&senses)?, convert::rows::<f64, 2>(&b, "b")?);
         let steps = self.task.config.reach.movement_steps();
         let mut all = Vec::with_capacity(senses.len() * steps);
         for (senses, b) in senses.iter().zip(&b) {
@@ -252,15 +218,15 @@ impl Task {
     }
 }
 
-impl Task {
+impl ReachTask {
     fn choose<'py>(
         &self,
         py: Python<'py>,
         senses: &PyReadonlyArray2<'py, f32>,
         threads: usize,
-        choose: impl Fn(&ReachTask, &ReachCase) -> Result<[f64; 2], EnvError> + Sync,
+        choose: impl Fn(&babble_env::ReachTask, &ReachCase) -> Result<[f64; 2], EnvError> + Sync,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let senses = convert::senses(senses)?;
+        let senses = rows_of_senses(senses)?;
         let task = &self.task;
         let one =
             |senses: &[f32; SENSES]| choose(task, &reference::case_from_senses(task, senses)?);
@@ -270,6 +236,74 @@ impl Task {
             })
             .map_err(errors::env)?;
         convert::array2(py, &chosen)
+    }
+}
+
+impl PyTask for babble_env::ReachTask {
+    /// From `start`, `target` (x, y) and `obstacle` (x, y, radius) or None \[m\]. Without the key
+    /// `obstacle` it stands halfway, with None there is none.
+    fn request(asked: &Bound<'_, PyDict>) -> PyResult<CaseRequest> {
+        let point = |name| match asked.get_item(name)? {
+            None => Ok(None),
+            Some(x) => x.extract::<Option<[f64; 2]>>(),
+        };
+        let obstacle = match asked.get_item("obstacle")? {
+            None => ObstacleRequest::Halfway,
+            Some(x) => x
+                .extract::<Option<[f64; 3]>>()?
+                .map(obstacle_from)
+                .map_or(ObstacleRequest::Absent, ObstacleRequest::At),
+        };
+        Ok(CaseRequest {
+            start: point("start")?,
+            target: point("target")?,
+            obstacle,
+        })
+    }
+
+    fn case<'py>(py: Python<'py>, state: &ReachState) -> PyResult<Bound<'py, PyDict>> {
+        case_dict(py, &state.case)
+    }
+
+    fn trail<'py>(
+        &self,
+        py: Python<'py>,
+        state: &ReachState,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let tip = |&q| self.arm.fingertip(q).into();
+        convert::array2(py, &state.trail.iter().map(tip).collect::<Vec<[f64; 2]>>())
+    }
+}
+
+/// A case as the dict that `reset(options=...)` takes: `start`, `target` (x, y) \[m\] and
+/// `obstacle` (x, y, radius) \[m\] or None.
+fn case_dict<'py>(py: Python<'py>, case: &ReachCase) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("start", (case.hand[0], case.hand[1]))?;
+    dict.set_item("target", (case.target[0], case.target[1]))?;
+    let obstacle = case.obstacle.map(|o| (o.centre.x, o.centre.y, o.radius));
+    dict.set_item("obstacle", obstacle)?;
+    Ok(dict)
+}
+
+/// An obstacle from (x, y, radius) \[m\].
+fn obstacle_from([x, y, radius]: [f64; 3]) -> Obstacle {
+    Obstacle {
+        centre: [x, y].into(),
+        radius,
+    }
+}
+
+/// Rows of flat observations in a (n, 11) array.
+pub(crate) fn rows_of_senses(array: &PyReadonlyArray2<'_, f32>) -> PyResult<Vec<[f32; SENSES]>> {
+    let senses = convert::rows(array, "senses")?;
+    match senses.iter().flatten().find(|x| !x.is_finite()) {
+        Some(x) => Err(errors::env(EnvError::OutOfBounds {
+            option: "senses",
+            value: x.to_string(),
+            bound: "finite".to_owned(),
+        })),
+        None => Ok(senses),
     }
 }
 

@@ -1,0 +1,173 @@
+"""The single environment: a batch of one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import gymnasium
+
+from gym_babble import _core
+from gym_babble.envs.choices import RENDER_MODES
+from gym_babble.envs.one import OneEnv
+from gym_babble.envs.window import Window
+from gym_babble.spaces import as_actions
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from gym_babble.envs.choices import Choices
+
+__all__ = ["BabbleEnv"]
+
+
+class BabbleEnv(gymnasium.Env[Any, Any]):
+    """An environment of any task. Each task has a class with its docs and arguments."""
+
+    metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES)}  # noqa: RUF012 - Gymnasium's
+    choices_type: ClassVar[type[Choices]]
+    """What checks the arguments."""
+
+    def __init__(self, **arguments: Any) -> None:
+        self._arguments = arguments
+        self.render_mode = arguments["render_mode"]
+        self._make_core()
+        self.observation_space = self._choices.observation_space
+        self.action_space = self._choices.action_space
+        self.metadata = {**type(self).metadata, "render_fps": self._choices.render_fps}
+        self._shape = self._choices.action_space.shape
+        self._seeded = False
+        self._window: Window | None = None
+
+    def _make_core(self) -> None:
+        self._choices = self.choices_type(**self._arguments)
+        self._batch = _core.Batch(self._choices.task, 1)
+        self._one = OneEnv(self._choices, self._batch, 0)
+
+    @property
+    def choices(self) -> Choices:
+        """What this environment was made with."""
+        return self._choices
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Any, dict[str, Any]]:
+        """Begins a new episode.
+
+        Args:
+            seed: Starts the stream of cases anew.
+            options: What to ask of the case; see the class.
+
+        Raises:
+            ConfigError: An option is unknown.
+            ScenarioError: The case asked for cannot be played. The options are forgotten, and the
+                episode goes on.
+        """
+        request = None if options is None else self._choices.request(options)
+        super().reset(seed=seed)
+        if seed is not None or not self._seeded:
+            self._batch.seed(0, int(self.np_random.integers(2**63)))
+            self._seeded = True
+        if request is not None:
+            self._batch.request(0, request)
+        self._batch.reset()
+        self._one.begin()
+        observation, _, _, _, info = self._look()
+        if self.render_mode == "human":
+            self._show()
+        return observation, info
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        """One step.
+
+        Raises:
+            ActionError: The action is NaN, infinite or of a wrong shape or type.
+            gymnasium.error.ResetNeeded: The episode has ended, or never began.
+        """
+        self._batch.step_one(as_actions(action, self._shape))
+        result = self._look()
+        if self.render_mode == "human":
+            self._show()
+        return result
+
+    def _look(self) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        choices = self._choices
+        senses, reward, terminated, truncated, info = self._batch.one()
+        goals = self._batch.one_goals() if choices.obs == "goal" else []
+        retina = self._one.retina() if choices.obs == "retina" else None
+        return choices.observation(senses, goals, retina), reward, terminated, truncated, info
+
+    @property
+    def compute_reward(self) -> Callable[[Any, Any, Any], Any]:
+        """Reward for achieved and desired goals (2,) or (..., 2) [m], with obs="goal".
+
+        Raises:
+            AttributeError: The observations have no goals; stable-baselines3 goes by this.
+        """
+        if self._choices.obs != "goal":
+            raise AttributeError("compute_reward is there with obs='goal'")
+        return self._choices.goal_reward
+
+    def render(self) -> Any:
+        """A frame (height, width, 3), or the frames since the last call, one a control step.
+
+        In "human" mode the window shows each step by itself and nothing is returned.
+
+        Raises:
+            gymnasium.error.ResetNeeded: There was no reset yet.
+        """
+        if self.render_mode == "human" and self._one.ready:
+            return self._show()
+        return self._one.render()
+
+    def _show(self) -> None:
+        if self._window is None:
+            self._window = Window(self._choices.size, self._choices.render_fps)
+        for frame in self._one.new_frames():
+            self._window.show(frame)
+
+    def close(self) -> None:
+        """Closes the window, if there is one."""
+        if self._window is not None:
+            self._window.close()
+            self._window = None
+
+    def get_state(self) -> bytes:
+        """The whole state, from which `set_state` continues bit for bit."""
+        return self._one.get_state()
+
+    def set_state(self, state: bytes) -> None:
+        """Continues from a state of an environment with the same arguments.
+
+        Raises:
+            SnapshotError: The bytes are not such a state; the environment is as it was.
+        """
+        self._one.set_state(state)
+        self._seeded = True
+
+    def state_hash(self) -> int:
+        """A number that two states share only if they are the same to the bit."""
+        return self._one.state_hash()
+
+    @property
+    def scenario(self) -> dict[str, Any]:
+        """The case of the running episode, as `reset` options."""
+        return self._one.scenario
+
+    @property
+    def trajectory(self) -> NDArray[np.float64]:
+        """The way of the hand since the reset (k, 2) [m]; recorded with a render_mode."""
+        return self._one.trajectory
+
+    def __getstate__(self) -> dict[str, Any]:
+        hidden = ("_batch", "_choices", "_one", "_window")
+        state = {k: v for k, v in self.__dict__.items() if k not in hidden}
+        return {"attributes": state, "core": self._one.freeze()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state["attributes"])
+        self._make_core()
+        self._one.thaw(state["core"])
+        self._window = None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import gymnasium
@@ -35,6 +35,8 @@ class Evaluation:
     """Control steps of each case; in `pattern` control 1."""
     returns: tuple[float, ...]
     """Sum of rewards of each case."""
+    facts: dict[str, tuple[bool, ...]] = field(default_factory=dict)
+    """What was true at the end of each case, by the names that the infos have too."""
 
     def count(self, outcome: str) -> int:
         """How many cases ended so."""
@@ -49,9 +51,13 @@ class Evaluation:
         return wilson(self.count(outcome), len(self.outcomes))
 
     def __add__(self, other: Evaluation) -> Evaluation:
-        """Both together, as of one larger evaluation."""
+        """Both together, as of one larger evaluation in the same environment."""
+        names = {**self.facts, **other.facts}
         return Evaluation(
-            self.outcomes + other.outcomes, self.steps + other.steps, self.returns + other.returns
+            self.outcomes + other.outcomes,
+            self.steps + other.steps,
+            self.returns + other.returns,
+            {name: self.facts.get(name, ()) + other.facts.get(name, ()) for name in names},
         )
 
 
@@ -113,14 +119,24 @@ def _play(agent: Agent, envs: Any, cases: Sequence[Scenario], *, deterministic: 
     running = np.ones(n, np.bool_)
     steps, returns = np.zeros(n, np.int64), np.zeros(n)
     outcomes = np.full(n, "running", object)
+    names = envs.get_attr("choices")[0].spec.facts
+    facts = {name: np.zeros(n, np.bool_) for name in names}
     while running.any():
         actions, state = agent.predict(observation, state, starts, deterministic)
         observation, rewards, terminated, truncated, infos = envs.step(actions)
         ended = terminated | truncated
         steps[running] += 1
         returns[running] += rewards[running]
-        outcomes[running & ended] = infos["outcome"][running & ended]
+        ending = running & ended
+        outcomes[ending] = infos["outcome"][ending]
+        for name, held in facts.items():
+            held[ending] = infos[name][ending]
         running &= ~ended
         # An ended environment begins anew at its next step, whose observation is a start.
         starts = ended
-    return Evaluation(tuple(outcomes), tuple(steps.tolist()), tuple(returns.tolist()))
+    return Evaluation(
+        tuple(outcomes),
+        tuple(steps.tolist()),
+        tuple(returns.tolist()),
+        {name: tuple(held.tolist()) for name, held in facts.items()},
+    )

@@ -120,8 +120,11 @@ def test_evaluation_counts_what_happened():
     assert result.rate("success") == sum(result.returns) / 60 > 0.9
     low, high = result.interval("success")
     assert low < result.rate("success") <= high
+    reached = tuple(outcome == "success" for outcome in result.outcomes)
+    assert result.facts == {"is_success": reached, "ever_success": reached}
     twice = result + result
     assert twice.count("success") == 2 * result.count("success")
+    assert twice.facts["is_success"] == reached * 2
     assert isinstance(twice, Evaluation)
 
 
@@ -141,6 +144,9 @@ def test_evaluation_equals_playing_one_by_one_in_every_control():
                 total, steps, ended = total + reward, steps + 1, terminated or truncated
             expected = (info["outcome"], steps, total)
             assert (result.outcomes[i], result.steps[i], result.returns[i]) == expected
+            assert {name: held[i] for name, held in result.facts.items()} == {
+                name: info[name] for name in result.facts
+            }
 
 
 def test_agents_are_ordered_as_documented():

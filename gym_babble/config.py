@@ -27,11 +27,14 @@ __all__ = [
     "Body",
     "BodyLike",
     "Config",
+    "Contact",
     "Cylinder",
     "EyeConfig",
+    "Grip",
     "Hand",
     "Joint",
     "Muscles",
+    "Object",
     "ReachNumbers",
     "Target",
     "config_json",
@@ -129,6 +132,67 @@ class Target:
     """Radius [m] [C]."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class Grip:
+    """The hand as it grasps.
+
+    Flexion is counted from the open hand; the paper's equilibrium points are opening angles,
+    EP = 90° − flexion [F].
+    """
+
+    fingers: str = "virtual"
+    """"virtual": one finger of three joints that carries the four fingers [P]; "independent":
+    twelve joints that share its equilibrium point, so that the fingers envelop an object one by
+    one, at about three times the cost."""
+    thumb_base_m: tuple[float, float] = (0.0, 0.006)
+    """Where the thumb sits: along the forearm from the wrist, and towards the palm's side [m] [C]."""
+    thumb_direction_deg: float = 154.7
+    """Direction of the open thumb, counter-clockwise from the forearm [deg]: 2.7 rad [C]. Its four
+    joints flex clockwise, against the fingers."""
+    flexion_deg: tuple[float, float] = (0.0, 90.0)
+    """Lowest and highest flexion of every joint of thumb and fingers [deg] [C]."""
+    reflex_deg: tuple[float, float] = (57.0, 80.0)
+    """Flexion that the enclosure reflex asks of thumb and fingers [deg] [C]. Full closure ejects
+    small objects, less holds them loosely."""
+    arm_muscles: Muscles = field(
+        default_factory=lambda: Muscles(kp=200.0, kd=200.0, torque_max=200.0)
+    )
+    """Muscles of shoulder and elbow: K_P and K_D [P], torque_max [C]."""
+    hand_muscles: Muscles = field(default_factory=lambda: Muscles(kp=0.5, kd=0.5, torque_max=0.5))
+    """Muscles of the hand's joints [C]. The paper's 200 and 200 crush or eject a light ball; the
+    time constant, 1 s, is the same."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Object:
+    """The red sphere to be grasped and what it rests on."""
+
+    density_kg_m3: float = 500.0
+    """Density [kg/m³] [C]."""
+    friction: float = 0.8
+    """Coulomb friction between object and hand [C]."""
+    support_friction: float = 0.5
+    """Coulomb friction between object and support [C]."""
+    linear_damping: float = 0.5
+    """Damping of its motion [1/s] [C]."""
+    angular_damping: float = 20.0
+    """Damping of its rotation, which stands for rolling friction [1/s] [C]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Contact:
+    """How hard surfaces are, and how contacts are solved."""
+
+    frequency_hz: float = 120.0
+    """Natural frequency of a contact's spring [Hz] [C]. Higher is harder."""
+    damping_ratio: float = 5.0
+    """Damping ratio of a contact's spring [C]. Higher lets surfaces sink in further."""
+    length_unit_m: float = 0.1
+    """Length that counts as one in the engine's tolerances [m] [C]."""
+    substeps: int = 1
+    """Substeps of the solver in a physics step [C]. Two cost twice as much."""
+
+
 def _paper_joints() -> dict[str, Joint]:
     return Config.profile_named("paper").body.joints
 
@@ -146,6 +210,9 @@ class Body:
     eye: EyeConfig = field(default_factory=EyeConfig)
     obstacle: Cylinder = field(default_factory=Cylinder)
     target: Target = field(default_factory=Target)
+    grip: Grip = field(default_factory=Grip)
+    object: Object = field(default_factory=Object)
+    contact: Contact = field(default_factory=Contact)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -52,6 +52,72 @@ pub struct Muscles {
     pub torque_max: f64,
 }
 
+/// Whether the four fingers flex as one or each for itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Fingers {
+    /// One "virtual finger" of three joints that carries the four fingers \[P\].
+    Virtual,
+    /// Twelve joints, which share the virtual finger's equilibrium point: the fingers envelop an
+    /// object one by one. Costs about three times as much.
+    Independent,
+}
+
+/// The hand as it grasps. Flexion is counted from the open hand; the paper's equilibrium points
+/// are opening angles, EP = 90° − flexion \[F\].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Grip {
+    /// Whether the fingers flex as one; `virtual` \[P\].
+    pub fingers: Fingers,
+    /// Where the thumb sits: along the forearm from the wrist, and towards the palm's side
+    /// \[m\]; 0, 0.006 \[C\].
+    pub thumb_base_m: [f64; 2],
+    /// Direction of the open thumb, counter-clockwise from the forearm \[deg\]; 154.7, that is
+    /// 2.7 rad \[C\]. Its four joints flex clockwise, against the fingers.
+    pub thumb_direction_deg: f64,
+    /// Lowest and highest flexion of every joint of thumb and fingers \[deg\]; 0 and 90 \[C\].
+    pub flexion_deg: [f64; 2],
+    /// Flexion that the enclosure reflex asks of thumb and fingers \[deg\]; 57 and 80 \[C\]. Full
+    /// closure ejects small objects, less holds them loosely.
+    pub reflex_deg: [f64; 2],
+    /// Muscles of shoulder and elbow; 200 and 200 \[P\], 200 N·m in torque control \[C\].
+    pub arm_muscles: Muscles,
+    /// Muscles of the hand's joints; 0.5, 0.5 and 0.5 N·m \[C\]. The paper's 200 and 200 crush or
+    /// eject a light ball; the time constant, 1 s, is the same.
+    pub hand_muscles: Muscles,
+}
+
+/// The red sphere to be grasped and what it rests on.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Object {
+    /// Density \[kg/m³\]; 500 \[C\].
+    pub density_kg_m3: f64,
+    /// Coulomb friction between object and hand; 0.8 \[C\].
+    pub friction: f64,
+    /// Coulomb friction between object and support; 0.5 \[C\].
+    pub support_friction: f64,
+    /// Damping of its motion \[1/s\]; 0.5 \[C\].
+    pub linear_damping: f64,
+    /// Damping of its rotation, which stands for rolling friction \[1/s\]; 20 \[C\].
+    pub angular_damping: f64,
+}
+
+/// How hard surfaces are, and how contacts are solved.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Contact {
+    /// Natural frequency of a contact's spring \[Hz\]; 120 \[C\]. Higher is harder.
+    pub frequency_hz: f64,
+    /// Damping ratio of a contact's spring; 5 \[C\]. Higher lets surfaces sink in further.
+    pub damping_ratio: f64,
+    /// Length that counts as one in the engine's tolerances \[m\]; 0.1 \[C\].
+    pub length_unit_m: f64,
+    /// Substeps of the solver in a physics step; 1 \[C\]. Two cost twice as much.
+    pub substeps: usize,
+}
+
 /// The vertical cylinder in the way.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -86,8 +152,14 @@ pub struct Body {
     pub eye: EyeConfig,
     /// The obstacle.
     pub obstacle: Cylinder,
-    /// The target.
+    /// The target of reaching.
     pub target: Target,
+    /// The hand as it grasps.
+    pub grip: Grip,
+    /// What is grasped.
+    pub object: Object,
+    /// How contacts are solved.
+    pub contact: Contact,
 }
 
 impl Body {
@@ -121,6 +193,36 @@ impl Body {
                 height_m: 0.12,
             },
             target: Target { radius_m: 0.012 },
+            grip: Grip {
+                fingers: Fingers::Virtual,
+                thumb_base_m: [0.0, 0.006],
+                thumb_direction_deg: 154.7,
+                flexion_deg: [0.0, 90.0],
+                reflex_deg: [57.0, 80.0],
+                arm_muscles: Muscles {
+                    kp: 200.0,
+                    kd: 200.0,
+                    torque_max: 200.0,
+                },
+                hand_muscles: Muscles {
+                    kp: 0.5,
+                    kd: 0.5,
+                    torque_max: 0.5,
+                },
+            },
+            object: Object {
+                density_kg_m3: 500.0,
+                friction: 0.8,
+                support_friction: 0.5,
+                linear_damping: 0.5,
+                angular_damping: 20.0,
+            },
+            contact: Contact {
+                frequency_hz: 120.0,
+                damping_ratio: 5.0,
+                length_unit_m: 0.1,
+                substeps: 1,
+            },
         }
     }
 
@@ -146,13 +248,56 @@ impl Body {
     pub fn validate(&self) -> Result<(), BodyError> {
         self.validate_lengths()?;
         within("arm.density_kg_m3", self.arm.density_kg_m3, 1.0, 1e5)?;
-        within("muscles.kp", self.muscles.kp, 1e-3, 1e6)?;
-        within("muscles.kd", self.muscles.kd, 1e-3, 1e6)?;
-        within("muscles.torque_max", self.muscles.torque_max, 1e-3, 1e6)?;
+        validate_muscles("muscles", &self.muscles)?;
+        self.validate_grasping()?;
         joints::validate(&self.joints)?;
         self.eye.validate()?;
         skeleton::validate_plane(self)?;
         PlanarArm::new(self).validate()
+    }
+
+    fn validate_grasping(&self) -> Result<(), BodyError> {
+        let Self {
+            grip,
+            object,
+            contact,
+            ..
+        } = self;
+        validate_muscles("grip.arm_muscles", &grip.arm_muscles)?;
+        validate_muscles("grip.hand_muscles", &grip.hand_muscles)?;
+        let [open, closed] = grip.flexion_deg;
+        let substeps = contact.substeps as f64;
+        for (field, value, low, high) in [
+            ("grip.thumb_base_m[0]", grip.thumb_base_m[0], -0.1, 0.2),
+            ("grip.thumb_base_m[1]", grip.thumb_base_m[1], -0.1, 0.1),
+            (
+                "grip.thumb_direction_deg",
+                grip.thumb_direction_deg,
+                0.0,
+                180.0,
+            ),
+            ("grip.flexion_deg[0]", open, -45.0, 90.0),
+            ("grip.flexion_deg[1]", closed, open + 1.0, 135.0),
+            ("grip.reflex_deg[0]", grip.reflex_deg[0], open, closed),
+            ("grip.reflex_deg[1]", grip.reflex_deg[1], open, closed),
+            ("object.density_kg_m3", object.density_kg_m3, 1.0, 1e5),
+            ("object.friction", object.friction, 0.0, 10.0),
+            (
+                "object.support_friction",
+                object.support_friction,
+                0.0,
+                10.0,
+            ),
+            ("object.linear_damping", object.linear_damping, 0.0, 1e3),
+            ("object.angular_damping", object.angular_damping, 0.0, 1e3),
+            ("contact.frequency_hz", contact.frequency_hz, 1.0, 1e4),
+            ("contact.damping_ratio", contact.damping_ratio, 0.1, 100.0),
+            ("contact.length_unit_m", contact.length_unit_m, 1e-3, 10.0),
+            ("contact.substeps", substeps, 1.0, 100.0),
+        ] {
+            within(field, value, low, high)?;
+        }
+        Ok(())
     }
 
     fn validate_lengths(&self) -> Result<(), BodyError> {
@@ -179,4 +324,10 @@ impl Body {
         }
         Ok(())
     }
+}
+
+fn validate_muscles(name: &str, muscles: &Muscles) -> Result<(), BodyError> {
+    within(&format!("{name}.kp"), muscles.kp, 1e-3, 1e6)?;
+    within(&format!("{name}.kd"), muscles.kd, 1e-3, 1e6)?;
+    within(&format!("{name}.torque_max"), muscles.torque_max, 1e-3, 1e6)
 }

@@ -8,6 +8,7 @@ pub mod eye;
 pub mod joints;
 pub mod obstacle;
 pub mod pose;
+pub mod robot;
 pub mod skeleton;
 
 pub use arm::PlanarArm;
@@ -15,3 +16,4 @@ pub use config::Body;
 pub use dynamics::{ArmState, Dynamics};
 pub use error::BodyError;
 pub use obstacle::{ContactWatch, Obstacle};
+pub use robot::Robot;

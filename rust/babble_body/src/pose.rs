@@ -7,9 +7,9 @@ use crate::eye::{Gaze, Material, Primitive, Shape};
 use crate::obstacle::Obstacle;
 use crate::skeleton::{self, Bone, Part};
 
-const SLEEVE: Material = Material::plain([92, 134, 178]);
-const FOREARM: Material = Material::plain([112, 154, 196]);
-const SKIN: Material = Material::plain([228, 184, 150]);
+pub(crate) const SLEEVE: Material = Material::plain([92, 134, 178]);
+pub(crate) const FOREARM: Material = Material::plain([112, 154, 196]);
+pub(crate) const SKIN: Material = Material::plain([228, 184, 150]);
 const OBSTACLE: Material = Material::plain([96, 108, 120]);
 const EYE_WHITE: Material = Material::plain([236, 236, 230]);
 const PUPIL: Material = Material::plain([40, 44, 52]);

@@ -1,0 +1,51 @@
+//! What the eye and an onlooker can see of the robot and its object.
+
+use nalgebra::Vector3;
+
+use super::links::{Part, Solid};
+use super::seam::Frame;
+use super::{Robot, World};
+use crate::eye::{Material, Primitive, Shape};
+use crate::pose::{FOREARM, SKIN, SLEEVE};
+
+impl Robot {
+    /// Adds arm and hand, the upper arm first.
+    pub fn push_visible(&self, world: &World, scene: &mut Vec<Primitive>) {
+        for (i, link) in self.links.iter().enumerate() {
+            let frame = self.frame(world, i);
+            for (part, solid) in &link.solids {
+                scene.push(Primitive::new(shape(solid, &frame), material(*part, i)));
+            }
+        }
+    }
+
+    /// The object, which is the eye's target.
+    #[must_use]
+    pub fn visible_object(&self, world: &World, radius: f64) -> Primitive {
+        Primitive::target(self.object(world), radius)
+    }
+}
+
+fn material(part: Part, link: usize) -> Material {
+    match part {
+        Part::Arm if link == 0 => SLEEVE,
+        Part::Arm => FOREARM,
+        Part::Palm | Part::Thumb | Part::Fingers => SKIN,
+    }
+}
+
+fn shape(solid: &Solid, frame: &Frame) -> Shape {
+    let world = |point: &Vector3<f64>| frame.world_from_local(point);
+    match solid {
+        Solid::Capsule { a, b, radius } => Shape::Capsule {
+            a: world(a),
+            b: world(b),
+            radius: *radius,
+        },
+        Solid::Cuboid { centre, half } => Shape::Cuboid {
+            centre: world(centre),
+            rotation: frame.rotation,
+            half_extents: *half,
+        },
+    }
+}

@@ -100,6 +100,17 @@ impl PlanarArm {
         }
     }
 
+    /// The same arm, reaching with another point of forearm or hand, given in the forearm's frame
+    /// \[m\].
+    #[must_use]
+    pub fn with_tip(&self, tip: Vector2<f64>) -> Self {
+        Self {
+            reach: tip.norm(),
+            tip_angle: libm::atan2(tip.y, tip.x),
+            ..self.clone()
+        }
+    }
+
     /// The elbow must stay on one side, so that inverse kinematics has one branch (item 3).
     pub(crate) fn validate(&self) -> Result<(), BodyError> {
         let (low, high) = (

@@ -6,7 +6,7 @@ mod spread;
 use std::f64::consts::FRAC_PI_2;
 
 use babble_body::config::Fingers;
-use babble_body::robot::{Ball, Drive, Robot, Setup};
+use babble_body::robot::{Ball, Pull, Robot, Setup, towards};
 use babble_body::{ArmState, Body, Dynamics, Obstacle, PlanarArm};
 use grasping::{DT, FAR, ball_at_palm, bytes, reflex, run, setup};
 use nalgebra::{Vector2, Vector3};
@@ -39,10 +39,7 @@ fn free_motion_is_the_closed_form() {
         for step in 0..1200 {
             let q_des = arm.denormalised(spread(1000 * seed + step / 100));
             state = dynamics.step(state, q_des, DT);
-            robot.step(
-                &mut world,
-                &Drive::EquilibriumPoints(robot.open_hand(q_des)),
-            );
+            robot.step(&mut world, &towards(robot.open_hand(q_des)));
             let posture = robot.posture(&world);
             for (ours, theirs) in state.q.into_iter().zip(posture) {
                 worst = worst.max((ours - theirs).abs());
@@ -60,7 +57,7 @@ fn free_motion_is_the_closed_form() {
 fn the_hand_closes_with_its_time_constant() {
     for robot in [robot(), independent()] {
         let mut world = robot.world(&setup(robot.open_hand([0.3, 1.0]), FAR));
-        let drive = Drive::EquilibriumPoints([0.3, 1.0, 0.6, 1.2]);
+        let drive = towards([0.3, 1.0, 0.6, 1.2]);
         for second in 1..=4 {
             run(&robot, &mut world, &drive, 1.0);
             let share = 1.0 - (-f64::from(second)).exp();
@@ -82,7 +79,7 @@ fn nothing_moves_by_itself() {
         let posture = [0.4, 0.9, 0.2, 0.3];
         let mut world = robot.world(&setup(posture, FAR));
         assert_eq!(robot.joint_angles(&world).count(), joints);
-        run(&robot, &mut world, &Drive::EquilibriumPoints(posture), 5.0);
+        run(&robot, &mut world, &towards(posture), 5.0);
         for (now, before) in robot.posture(&world).into_iter().zip(posture) {
             assert!((now - before).abs() < 1e-5, "{now} {before}");
         }
@@ -95,9 +92,9 @@ fn an_arm_at_rest_does_not_fall_asleep() {
     let robot = robot();
     let rest = robot.open_hand([0.0, 0.5]);
     let mut world = robot.world(&setup(rest, FAR));
-    run(&robot, &mut world, &Drive::EquilibriumPoints(rest), 20.0);
+    run(&robot, &mut world, &towards(rest), 20.0);
     let there = [0.5, 1.0, 0.5, 0.5];
-    run(&robot, &mut world, &Drive::EquilibriumPoints(there), 8.0);
+    run(&robot, &mut world, &towards(there), 8.0);
     for (now, asked) in robot.posture(&world).into_iter().zip(there) {
         assert!((now - asked).abs() < 2e-3, "{now} {asked}");
     }
@@ -132,12 +129,12 @@ proptest! {
         let limits = [grip.arm_muscles, grip.arm_muscles, grip.hand_muscles, grip.hand_muscles];
         let torques = std::array::from_fn(|i| shares[i] * limits[i].torque_max);
         let before = robot.posture(&world);
-        run(&robot, &mut world, &Drive::Torques(torques), 0.1);
+        run(&robot, &mut world, &torques.map(Pull::Torque), 0.1);
         for (i, now) in robot.posture(&world).into_iter().enumerate() {
             let expected = before[i] + 0.1 * torques[i] / limits[i].kd;
             prop_assert!((now - expected).abs() < 4e-3, "joint {i}: {now} {expected}");
         }
-        run(&robot, &mut world, &Drive::Torques(torques), 8.0);
+        run(&robot, &mut world, &torques.map(Pull::Torque), 8.0);
         for (now, [low, high]) in robot.posture(&world).into_iter().zip(robot.ranges()) {
             prop_assert!(now > low - 0.01 && now < high + 0.01, "{now} not in [{low}, {high}]");
         }
@@ -162,7 +159,7 @@ fn the_support_carries_the_weight() {
                 support: true,
                 ..setup(open, ball)
             });
-            run(&robot, &mut world, &Drive::EquilibriumPoints(open), 2.0);
+            run(&robot, &mut world, &towards(open), 2.0);
             let volume = 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
             let weight = body.object.density_kg_m3 * volume * 9.81;
             let force = robot.touch(&world).support;
@@ -186,7 +183,7 @@ fn without_support_the_ball_falls() {
         support: true,
         ..setup(open, ball)
     });
-    let drive = Drive::EquilibriumPoints(open);
+    let drive = towards(open);
     run(&robot, &mut world, &drive, 0.5);
     robot.remove_support(&mut world);
     assert!(!robot.has_support(&world));
@@ -219,7 +216,7 @@ fn the_support_touches_the_object_alone() {
             ..setup(start, ball)
         })
     });
-    let drive = Drive::EquilibriumPoints([0.8, 1.5, 1.0, 1.2]);
+    let drive = towards([0.8, 1.5, 1.0, 1.2]);
     run(&robot, &mut with, &drive, 1.0);
     run(&robot, &mut without, &drive, 1.0);
     assert_eq!(robot.posture(&with), robot.posture(&without));
@@ -241,7 +238,7 @@ fn the_obstacle_stops_the_arm() {
         ..setup(robot.open_hand(start), FAR)
     });
     assert!(!robot.touch(&world).obstacle);
-    let drive = Drive::EquilibriumPoints(robot.open_hand([1.6, 0.6]));
+    let drive = towards(robot.open_hand([1.6, 0.6]));
     run(&robot, &mut world, &drive, 3.0);
     assert!(robot.touch(&world).obstacle);
     let shoulder = robot.posture(&world)[0];
@@ -338,4 +335,37 @@ fn thumb_and_fingers_close_towards_each_other() {
     let [thumb, finger] = tips(60_f64.to_radians());
     assert!(thumb.y > 0.02 && thumb.x > -0.03, "{thumb}");
     assert!(finger.y > 0.02, "{finger}");
+}
+
+proptest! {
+    /// Distances by forward kinematics are those to the solids that the engine moves. Catches links
+    /// or solids that stand elsewhere in one of the two, and the palm's edges.
+    #[test]
+    fn clearance_is_the_distance_to_what_is_seen(
+        q1 in -1.3..3.1_f64, q2 in 0.1..2.2_f64, thumb in 0.0..1.5_f64, finger in 0.0..1.5_f64,
+        x in -0.4..0.4_f64, y in -0.4..0.4_f64, z in -0.05..0.05_f64,
+    ) {
+        use babble_body::eye::Shape;
+        let robot = robot();
+        let posture = [q1, q2, thumb, finger];
+        let mut scene = Vec::new();
+        robot.push_visible(&robot.world(&setup(posture, FAR)), &mut scene);
+        let point = Vector3::new(x, y, z);
+        let least = scene.iter().map(|thing| match &thing.shape {
+            Shape::Capsule { a, b, radius } => {
+                let along = (0..=4000).map(|k| a + (b - a) * (f64::from(k) / 4000.0));
+                along.map(|p| (point - p).norm()).fold(f64::INFINITY, f64::min) - radius
+            }
+            Shape::Cuboid { centre, rotation, half_extents } => {
+                let local = rotation.tr_mul(&(point - centre));
+                let nearest = local.zip_map(half_extents, |p, h| p.clamp(-h, h));
+                (local - nearest).norm()
+            }
+            other => panic!("{other:?}"),
+        }).fold(f64::INFINITY, f64::min);
+        let clearance = robot.clearance(posture, &point);
+        prop_assert!((clearance.max(-0.006) - least.max(-0.006)).abs() < 1e-5 || clearance < 0.0 && least <= 0.0,
+            "{clearance} {least}");
+        prop_assert!(robot.clearance_of_vertical(posture, Vector2::new(x, y)) <= clearance + 1e-9);
+    }
 }

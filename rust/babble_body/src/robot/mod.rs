@@ -5,6 +5,7 @@
 //! template, with arm, hand and object put where a case has them.
 
 mod build;
+mod clearance;
 mod links;
 mod scene;
 mod seam;
@@ -30,14 +31,22 @@ const FREE_AXIS: usize = 3;
 /// the hand's.
 pub type Posture = [f64; 4];
 
-/// What moves the joints.
+/// What moves a joint, or every joint of a digit.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Drive {
-    /// Equilibrium points of the muscles \[rad\], Eq. 2.
-    EquilibriumPoints(Posture),
-    /// Torques on top of the muscles' damping \[N·m\]; those of thumb and finger are those of each of
-    /// their joints.
-    Torques(Posture),
+pub enum Pull {
+    /// Muscles with this equilibrium point \[rad\], Eq. 2.
+    EquilibriumPoint(f64),
+    /// This torque on top of the muscles' damping \[N·m\].
+    Torque(f64),
+}
+
+/// What moves shoulder, elbow, thumb and virtual finger.
+pub type Drive = [Pull; 4];
+
+/// Muscles that pull towards a posture.
+#[must_use]
+pub fn towards(posture: Posture) -> Drive {
+    posture.map(Pull::EquilibriumPoint)
 }
 
 /// A sphere that can be grasped.
@@ -167,7 +176,7 @@ impl Robot {
         multibody.apply_displacements(&angles);
         multibody.forward_kinematics(bodies, false);
         multibody.update_rigid_bodies(bodies, true);
-        self.drive(world, &Drive::EquilibriumPoints(posture));
+        self.drive(world, &towards(posture));
     }
 
     fn place_ball(&self, world: &mut World, ball: &Ball) {
@@ -203,16 +212,14 @@ impl Robot {
             let i = link.muscle.index();
             let kp = link.muscle.settings(&self.body).kp;
             let joint = &mut joint.joint;
-            match drive {
-                Drive::EquilibriumPoints(points) => {
-                    joint.set_spring(FREE_AXIS, kp as f32, points[i] as f32);
-                }
-                Drive::Torques(torques) => {
+            let (stiffness, rest) = match drive[i] {
+                Pull::EquilibriumPoint(point) => (kp, point),
+                Pull::Torque(torque) => {
                     let q = f64::from(joint.coords()[FREE_AXIS]);
-                    let (stiffness, rest) = torque_as_spring(torques[i], q, self.ranges[i], kp);
-                    joint.set_spring(FREE_AXIS, stiffness as f32, rest as f32);
+                    torque_as_spring(torque, q, self.ranges[i], kp)
                 }
-            }
+            };
+            joint.set_spring(FREE_AXIS, stiffness as f32, rest as f32);
         }
     }
 

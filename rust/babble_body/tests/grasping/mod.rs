@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each test file uses some of it")]
 
-use babble_body::robot::{Ball, Drive, Posture, Robot, Setup, World};
+use babble_body::robot::{Ball, Drive, Posture, Robot, Setup, World, towards};
 
 pub(crate) const DT: f64 = 0.005;
 /// A ball out of everybody's way.
@@ -42,7 +42,7 @@ pub(crate) fn ball_at_palm(robot: &Robot, arm: [f64; 2], radius: f64) -> World {
 /// The reflex's equilibrium points with the arm in `arm` \[rad\].
 pub(crate) fn reflex(robot: &Robot, arm: [f64; 2]) -> Drive {
     let [thumb, finger] = robot.body().grip.reflex_deg.map(f64::to_radians);
-    Drive::EquilibriumPoints([arm[0], arm[1], thumb, finger])
+    towards([arm[0], arm[1], thumb, finger])
 }
 
 /// Steps for `seconds`.

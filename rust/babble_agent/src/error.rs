@@ -29,6 +29,14 @@ pub enum AgentError {
         /// Movements babbled.
         movements: u64,
     },
+    /// The hand kept hardly any object.
+    #[error("the hand kept the object in only {kept} of {babbles} babbles; nothing can be learnt")]
+    NothingHeld {
+        /// Objects kept.
+        kept: u64,
+        /// Babbles made.
+        babbles: u64,
+    },
     /// The maps or their weights.
     #[error(transparent)]
     Brain(#[from] BrainError),

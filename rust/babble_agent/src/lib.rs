@@ -2,9 +2,11 @@
 
 pub mod babbling;
 mod error;
+pub mod grasp;
 pub mod hebb;
 pub mod reference;
 pub mod store;
+mod tensors;
 
 pub use babbling::{Babbling, Experience};
 pub use error::AgentError;

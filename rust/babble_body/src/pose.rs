@@ -60,6 +60,19 @@ pub fn target(body: &Body, at: [f64; 2]) -> Primitive {
     Primitive::target(Vector3::new(at[0], at[1], 0.0), body.target.radius_m)
 }
 
+/// A flat disc below the plane of motion, where an object is to be carried.
+#[must_use]
+pub fn goal(at: [f64; 2]) -> Primitive {
+    const RADIUS_M: f64 = 0.02;
+    let end = |z| Vector3::new(at[0], at[1], z);
+    let shape = Shape::Cylinder {
+        a: end(-0.036),
+        b: end(-0.034),
+        radius: RADIUS_M,
+    };
+    Primitive::new(shape, TRAIL)
+}
+
 /// The vertical cylinder, half of it above the plane.
 #[must_use]
 pub fn obstacle(body: &Body, obstacle: &Obstacle) -> Primitive {

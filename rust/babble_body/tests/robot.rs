@@ -111,11 +111,11 @@ proptest! {
         let palm = robot.palm(&world);
         let middle = 0.13 + 0.065 / 2.0;
         let expected = placement.elbow + placement.fore_direction * middle;
-        prop_assert!((palm.origin - expected.push(0.0)).norm() < 1e-6);
+        prop_assert!((palm.origin - expected.push(0.0)).norm() < 3e-6);
         let side = Vector3::new(-placement.fore_direction.y, placement.fore_direction.x, 0.0);
-        prop_assert!((palm.rotation.column(1) - side).norm() < 1e-6);
+        prop_assert!((palm.rotation.column(1) - side).norm() < 3e-6);
         for (now, asked) in robot.posture(&world).into_iter().zip([q1, q2, flexion, flexion]) {
-            prop_assert!((now - asked).abs() < 1e-6);
+            prop_assert!((now - asked).abs() < 3e-6);
         }
     }
 
@@ -220,6 +220,28 @@ fn the_support_touches_the_object_alone() {
     run(&robot, &mut with, &drive, 1.0);
     run(&robot, &mut without, &drive, 1.0);
     assert_eq!(robot.posture(&with), robot.posture(&without));
+}
+
+/// The first step of a new world sees arm and hand where they are. Catches colliders that still
+/// stand where the template has them, along x, and kick a ball there.
+#[test]
+fn the_first_step_meets_no_phantom() {
+    let robot = robot();
+    let ball = Ball {
+        centre: [0.2, 0.01],
+        radius: 0.03,
+    };
+    let posture = robot.open_hand([1.5, 0.5]);
+    let mut world = robot.world(&Setup {
+        support: true,
+        ..setup(posture, ball)
+    });
+    for _ in 0..5 {
+        robot.step(&mut world, &towards(posture));
+        assert!(!robot.touch(&world).any());
+        assert_eq!(robot.penetration(&world), 0.0);
+    }
+    assert!((robot.object(&world) - Vector3::new(0.2, 0.01, 0.0)).norm() < 1e-4);
 }
 
 /// The obstacle stops arm and hand and says so; the object cannot pass it either.

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::error::EnvError;
+use crate::grasp::GraspNumbers;
 
 /// Names of the profiles.
 pub const PROFILES: [&str; 2] = ["paper", "icub"];
@@ -49,8 +50,10 @@ pub struct Config {
     pub profile: String,
     /// Arm, hand, muscles, eye, obstacle and target.
     pub body: Body,
-    /// The task's numbers.
+    /// The reaching task's numbers.
     pub reach: ReachNumbers,
+    /// The grasping task's numbers.
+    pub grasp: GraspNumbers,
 }
 
 impl Config {
@@ -70,14 +73,15 @@ impl Config {
             control_period_s: 0.05,
             physics_steps: 10,
         };
-        let (body, reach) = match name {
-            "paper" => (Body::paper(), reach),
+        let (body, reach, grasp) = match name {
+            "paper" => (Body::paper(), reach, GraspNumbers::paper()),
             "icub" => (
                 Body::icub(),
                 ReachNumbers {
                     distance_m: [0.1, 0.2],
                     ..reach
                 },
+                GraspNumbers::icub(),
             ),
             _ => {
                 return Err(EnvError::Option {
@@ -91,6 +95,7 @@ impl Config {
             profile: name.to_owned(),
             body,
             reach,
+            grasp,
         })
     }
 
@@ -158,6 +163,7 @@ impl Config {
     /// [`EnvError::Config`] or [`EnvError::Body`] with field, value and bound.
     pub fn validate(&self) -> Result<(), EnvError> {
         self.body.validate()?;
+        self.grasp.validate()?;
         let reach = &self.reach;
         let [near, far] = reach.distance_m;
         within("reach.distance_m[0]", near, 1e-3, 1.0)?;
@@ -268,7 +274,8 @@ fn document(error: &impl ToString) -> EnvError {
     }
 }
 
-fn within(field: &str, value: f64, low: f64, high: f64) -> Result<(), EnvError> {
+/// `Ok` when `value` is finite and inside `[low, high]`.
+pub(crate) fn within(field: &str, value: f64, low: f64, high: f64) -> Result<(), EnvError> {
     if value.is_finite() && (low..=high).contains(&value) {
         return Ok(());
     }

@@ -76,6 +76,14 @@ pub enum EnvError {
         /// How many were tried.
         tries: u32,
     },
+    /// No case of grasping could be drawn: the config leaves no room for one.
+    #[error(
+        "no case in {tries} tries in which the object can be brought to the palm and the arm at the start is clear of it"
+    )]
+    NoGraspCase {
+        /// How many were tried.
+        tries: u32,
+    },
     /// The bytes are not a snapshot of this environment.
     #[error("snapshot: {problem}")]
     Snapshot {

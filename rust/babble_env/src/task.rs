@@ -148,3 +148,13 @@ pub struct Standing {
     /// What is true of it in the order of the spec, then false.
     pub facts: [bool; MAX_FACTS],
 }
+
+/// Reward of a goal form, from positions alone \[m\]: 0 within `radius` \[m\], else −1.
+pub(crate) fn goal_reward(radius: f64, achieved: [f32; 2], desired: [f32; 2]) -> f64 {
+    let [dx, dy] = [0, 1].map(|i| f64::from(achieved[i]) - f64::from(desired[i]));
+    if (dx * dx + dy * dy).sqrt() <= radius {
+        0.0
+    } else {
+        -1.0
+    }
+}

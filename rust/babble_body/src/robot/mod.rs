@@ -159,24 +159,49 @@ impl Robot {
         world
     }
 
+    /// A world with every joint at its angle, in the order of [`Self::joint_angles`] \[rad\], and the
+    /// object at a point \[m\]: to be looked at, not to be stepped.
+    #[must_use]
+    pub fn posed(&self, joints: &[f32], object: &Vector3<f64>) -> World {
+        let mut world = self.template.clone();
+        self.place_joints(&mut world, joints);
+        world.bodies[self.object].set_translation(vector(object), true);
+        world
+    }
+
     fn place_robot(&self, world: &mut World, posture: Posture) {
+        let angles: Vec<f32> = self
+            .links
+            .iter()
+            .map(|link| posture[link.muscle.index()] as f32)
+            .collect();
+        self.place_joints(world, &angles);
+        self.drive(world, &towards(posture));
+    }
+
+    /// Turns every joint of the template by an angle \[rad\].
+    fn place_joints(&self, world: &mut World, angles: &[f32]) {
         let World {
             bodies,
+            colliders,
             multibody_joints,
             ..
         } = world;
         let Some((multibody, _)) = multibody_joints.get_mut(self.joints[0]) else {
             return;
         };
-        let angles: Vec<f32> = self
-            .links
-            .iter()
-            .map(|link| posture[link.muscle.index()] as f32)
-            .collect();
-        multibody.apply_displacements(&angles);
+        multibody.apply_displacements(angles);
         multibody.forward_kinematics(bodies, false);
         multibody.update_rigid_bodies(bodies, true);
-        self.drive(world, &towards(posture));
+        // The engine moves colliders after a step only: the first one would see the template's.
+        for body in self.bodies.iter().map(|&handle| &bodies[handle]) {
+            for &handle in body.colliders() {
+                let collider = &mut colliders[handle];
+                if let Some(within) = collider.position_wrt_parent() {
+                    collider.set_position(body.position() * within);
+                }
+            }
+        }
     }
 
     fn place_ball(&self, world: &mut World, ball: &Ball) {
@@ -273,11 +298,16 @@ impl Robot {
     #[must_use]
     pub fn palm(&self, world: &World) -> Frame {
         let forearm = self.frame(world, FOREARM);
-        let middle = self.body.arm.forearm_m + links::palm_length(&self.body) / 2.0;
         Frame {
-            origin: forearm.world_from_local(&Vector3::new(middle, 0.0, 0.0)),
+            origin: forearm.world_from_local(&Vector3::new(self.palm_centre(), 0.0, 0.0)),
             ..forearm
         }
+    }
+
+    /// Distance of the palm's centre from the elbow \[m\].
+    #[must_use]
+    pub fn palm_centre(&self) -> f64 {
+        self.body.arm.forearm_m + links::palm_length(&self.body) / 2.0
     }
 
     /// Where the centre of a ball is that lies against the palm, in the palm's frame \[m\].

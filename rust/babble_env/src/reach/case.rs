@@ -147,7 +147,8 @@ fn posture_for(
     )))
 }
 
-fn check_obstacle(obstacle: &Obstacle) -> Result<(), EnvError> {
+/// Checks an obstacle that a user placed.
+pub(crate) fn check_obstacle(obstacle: &Obstacle) -> Result<(), EnvError> {
     if obstacle.centre.iter().all(|x| x.is_finite()) && (1e-4..=1.0).contains(&obstacle.radius) {
         return Ok(());
     }

@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 
 use super::case::{CaseRequest, ReachCase};
 use super::movement::{Fidelity, MovementPath};
-use super::options::{Control, Reward};
 use super::task::ReachTask;
 use crate::config::Config;
 use crate::error::EnvError;
+use crate::options::{Control, Reward};
 use crate::outcome::Outcome;
 use crate::stream::Stream;
-use crate::task::{Episode, MAX_FACTS, MAX_TERMS, Phase, Standing, Step};
+use crate::task::{self, Episode, MAX_FACTS, MAX_TERMS, Phase, Standing, Step};
 
 /// Numbers in a flat observation: eye 2, obstacle 2, hand 2, arm 2, stretch 2, time 1.
 pub const SENSES: usize = 11;
@@ -351,12 +351,7 @@ impl Reach {
 /// Positions are compared as the f32 numbers that an agent stores.
 #[must_use]
 pub fn goal_reward(config: &Config, achieved: [f32; 2], desired: [f32; 2]) -> f64 {
-    let [dx, dy] = [0, 1].map(|i| f64::from(achieved[i]) - f64::from(desired[i]));
-    if (dx * dx + dy * dy).sqrt() <= config.reach.success_radius_m {
-        0.0
-    } else {
-        -1.0
-    }
+    task::goal_reward(config.reach.success_radius_m, achieved, desired)
 }
 
 fn goal_reached(task: &ReachTask, state: &ReachState) -> bool {

@@ -12,5 +12,5 @@ mod task;
 pub use case::ReachCase;
 pub use episode::{Drawn, EVER_SUCCESS, IS_SUCCESS, Reach, ReachState, SENSES, goal_reward};
 pub use movement::{Movement, MovementPath};
-pub use options::{Control, MAX_EPISODE_STEPS, Options, Reward};
+pub use options::{MAX_EPISODE_STEPS, Options};
 pub use task::ReachTask;

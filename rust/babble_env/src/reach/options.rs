@@ -2,32 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::choice::named_enum;
+use crate::options::{Control, Reward};
 
 /// Time limit of an episode in control steps; 240 are 12 s.
 pub const MAX_EPISODE_STEPS: u32 = 240;
-
-named_enum!(
-    /// What an action means.
-    Control, "control",
-    /// A change of the muscles' equilibrium points.
-    DeltaPosture = "delta_posture",
-    /// The muscles' equilibrium points themselves.
-    Posture = "posture",
-    /// Joint torques on top of the muscles' damping.
-    Torque = "torque",
-    /// Parameters (b1, b2) of one whole movement, the paper's action.
-    Pattern = "pattern"
-);
-
-named_enum!(
-    /// What is rewarded.
-    Reward, "reward",
-    /// Progress towards the target, +1 for success, −1 for a failure.
-    Progress = "progress",
-    /// 1 for success, else 0.
-    Sparse = "sparse"
-);
 
 /// The choices a user makes when a reaching environment is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

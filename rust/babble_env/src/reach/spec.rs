@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::episode::FACTS;
-use super::options::{Control, Reward};
 use super::task::ReachTask;
+use crate::options::{Control, Reward};
 use crate::outcome::Outcome;
 use crate::spec::{Entry, Spec};
 

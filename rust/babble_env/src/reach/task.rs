@@ -9,10 +9,11 @@ use serde::Serialize;
 
 use super::case::ReachCase;
 use super::episode::{Reach, ReachState, SENSES};
-use super::options::{Options, Reward};
+use super::options::Options;
 use super::{picture, spec};
 use crate::config::{Config, ReachNumbers};
 use crate::error::EnvError;
+use crate::options::{Reward, check_max_episode_steps};
 use crate::outcome::Outcome;
 use crate::picture::View;
 use crate::spec::Spec;
@@ -70,6 +71,7 @@ impl Task for ReachTask {
             profile,
             body,
             reach,
+            ..
         } = &self.config;
         let config = Fingerprint {
             profile,
@@ -116,13 +118,7 @@ impl ReachTask {
                     .to_owned(),
             });
         }
-        if !(1..=1_000_000).contains(&options.max_episode_steps) {
-            return Err(EnvError::OutOfBounds {
-                option: "max_episode_steps",
-                value: options.max_episode_steps.to_string(),
-                bound: "in [1, 1000000]".to_owned(),
-            });
-        }
+        check_max_episode_steps(options.max_episode_steps)?;
         let arm = PlanarArm::new(&config.body);
         Ok(Self {
             dynamics: Dynamics::new(&config.body, &arm),

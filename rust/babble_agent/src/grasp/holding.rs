@@ -1,0 +1,76 @@
+//! How well the reflex holds: objects put at the palm, carried about without support.
+
+use babble_body::robot::{Drive, World, towards};
+use babble_env::grasp::GraspTask;
+use babble_env::{EnvError, Pool, Purpose, Stream};
+use rayon::prelude::*;
+
+use super::babbling::object_at_palm;
+
+/// Time that the reflex closes the hand before the support goes \[s\].
+const CLOSING_S: f64 = 3.0;
+/// Time that the arm is moved about \[s\].
+const MOVING_S: f64 = 10.0;
+/// Time between two random postures of the arm \[s\].
+const CHANGE_S: f64 = 0.5;
+
+/// How a trial went.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Trial {
+    /// Whether the object was in the hand at the end.
+    pub held: bool,
+    /// How deep it was inside of arm and hand at most \[m\].
+    pub penetration: f64,
+    /// Flexion of thumb and finger before the support went \[rad\].
+    pub flexion: [f64; 2],
+}
+
+/// Trials with the seeds 0, 1, … `n`: the reflex closes on an object of `diameter` \[m\] in a random
+/// posture, the support goes, and the arm moves for 10 s to a random posture every half second.
+///
+/// # Errors
+/// An error of the threads.
+pub fn trials(
+    task: &GraspTask,
+    diameter: f64,
+    n: usize,
+    pool: &mut Pool,
+) -> Result<Vec<Trial>, EnvError> {
+    pool.run(|| {
+        (0..n as u64)
+            .into_par_iter()
+            .map(|seed| trial(task, diameter, &mut Stream::new(Purpose::Test, seed, 0)))
+            .collect()
+    })?
+}
+
+fn trial(task: &GraspTask, diameter: f64, stream: &mut Stream) -> Result<Trial, EnvError> {
+    let mut posture = || task.draw_free_posture(diameter / 2.0, stream);
+    let start = posture()?;
+    let (mut world, case) = object_at_palm(task, start, diameter);
+    let mut trial = Trial {
+        held: false,
+        penetration: 0.0,
+        flexion: [0.0; 2],
+    };
+    trial.carry(task, &mut world, start, CLOSING_S);
+    let flexion = task.robot.posture(&world);
+    trial.flexion = [flexion[2], flexion[3]];
+    task.robot.remove_support(&mut world);
+    for _ in 0..(MOVING_S / CHANGE_S) as usize {
+        trial.carry(task, &mut world, posture()?, CHANGE_S);
+    }
+    trial.held = task.in_hand(&world, case.radius()) && task.robot.touch(&world).encloses();
+    Ok(trial)
+}
+
+impl Trial {
+    fn carry(&mut self, task: &GraspTask, world: &mut World, arm: [f64; 2], seconds: f64) {
+        let [thumb, finger] = task.reflex();
+        let drive: Drive = towards([arm[0], arm[1], thumb, finger]);
+        for _ in 0..(seconds / task.config.grasp.physics_step_s()).round() as usize {
+            task.robot.step(world, &drive);
+            self.penetration = self.penetration.max(task.robot.penetration(world));
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! Named tensors and JSON in a safetensors file. The JSON stands in the header's metadata and begins
+//! with a checksum of all the rest. Nothing in such a file is code.
+
+use std::collections::HashMap;
+
+use babble_brain::Association;
+use safetensors::tensor::{Dtype, TensorView};
+use safetensors::{SafeTensors, serialize};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use xxhash_rust::xxh3::Xxh3;
+
+use crate::error::AgentError;
+
+/// What the JSON begins with; the checksum of 16 hexadecimal digits and `",` follow.
+const CHECKSUM: &str = "{\"checksum\":\"";
+
+/// A tensor to be written.
+pub(crate) struct Tensor<'a> {
+    pub(crate) name: String,
+    pub(crate) shape: Vec<usize>,
+    pub(crate) values: &'a [f32],
+}
+
+/// Names of an association's tensors: weights, averages of the output and of the input.
+pub(crate) fn names(prefix: &str) -> [String; 3] {
+    ["weights", "a_bar", "g_bar"].map(|name| format!("{prefix}{name}"))
+}
+
+/// The weights and averages of an association.
+pub(crate) fn of<'a>(prefix: &str, w: &'a Association) -> [Tensor<'a>; 3] {
+    let [weights, a_bar, g_bar] = names(prefix);
+    let tensor = |name, shape, values| Tensor {
+        name,
+        shape,
+        values,
+    };
+    [
+        tensor(weights, vec![w.n_out(), w.n_in()], w.weights()),
+        tensor(a_bar, vec![w.n_out()], w.a_bar()),
+        tensor(g_bar, vec![w.n_in()], w.g_bar()),
+    ]
+}
+
+/// The bytes of a file; `key` names the JSON in the header.
+pub(crate) fn write(
+    key: &str,
+    metadata: &impl Serialize,
+    tensors: &[Tensor],
+) -> Result<Vec<u8>, AgentError> {
+    let data: Vec<Vec<u8>> = tensors
+        .iter()
+        .map(|tensor| tensor.values.iter().flat_map(|x| x.to_le_bytes()).collect())
+        .collect();
+    let mut views = Vec::new();
+    for (tensor, data) in tensors.iter().zip(&data) {
+        let view = TensorView::new(Dtype::F32, tensor.shape.clone(), data).map_err(|e| file(&e))?;
+        views.push((tensor.name.as_str(), view));
+    }
+    let json = serde_json::to_string(metadata).map_err(|e| file(&e))?;
+    let text = with_checksum(&json, &data);
+    serialize(views, Some(HashMap::from([(key.to_owned(), text)]))).map_err(|e| file(&e))
+}
+
+/// The JSON and the tensors of that `names` in a file's bytes.
+///
+/// # Errors
+/// [`AgentError::File`] for bytes that are cut short, altered, or of another kind.
+pub(crate) fn read<M: DeserializeOwned>(
+    key: &str,
+    bytes: &[u8],
+    names: &[String],
+) -> Result<(M, Vec<Vec<f32>>), AgentError> {
+    let tensors = SafeTensors::deserialize(bytes).map_err(|e| file(&e))?;
+    let (_, header) = SafeTensors::read_metadata(bytes).map_err(|e| file(&e))?;
+    let text = header
+        .metadata()
+        .as_ref()
+        .and_then(|all| all.get(key))
+        .ok_or_else(|| AgentError::File {
+            problem: format!("a safetensors file, but without {key:?} in its metadata"),
+        })?;
+    let json = without_checksum(text, &tensors, names)?;
+    let values = names.iter().map(|name| values(&tensors, name));
+    Ok((
+        serde_json::from_str(&json).map_err(|e| file(&e))?,
+        values.collect::<Result<_, _>>()?,
+    ))
+}
+
+/// Checks that a file is of the version that this code writes.
+pub(crate) fn check_version(found: u32, known: u32) -> Result<(), AgentError> {
+    if found == known {
+        return Ok(());
+    }
+    Err(AgentError::File {
+        problem: format!("version {found} is not {known}"),
+    })
+}
+
+fn checksum<'a>(json: &str, data: impl IntoIterator<Item = &'a [u8]>) -> String {
+    let mut hash = Xxh3::new();
+    hash.update(json.as_bytes());
+    for bytes in data {
+        hash.update(bytes);
+    }
+    format!("{:016x}", hash.digest())
+}
+
+/// A JSON object with the checksum of itself and `data` as its first field.
+fn with_checksum(json: &str, data: &[Vec<u8>]) -> String {
+    let sum = checksum(json, data.iter().map(Vec::as_slice));
+    format!("{CHECKSUM}{sum}\",{}", &json[1..])
+}
+
+fn without_checksum(
+    text: &str,
+    tensors: &SafeTensors<'_>,
+    names: &[String],
+) -> Result<String, AgentError> {
+    let altered = || AgentError::File {
+        problem: "the file is altered: its checksum differs".to_owned(),
+    };
+    let rest = text.strip_prefix(CHECKSUM).ok_or_else(altered)?;
+    let (sum, fields) = rest.split_once("\",").ok_or_else(altered)?;
+    let json = format!("{{{fields}");
+    let mut data = Vec::new();
+    for name in names {
+        data.push(tensors.tensor(name).map_err(|e| file(&e))?.data());
+    }
+    if sum == checksum(&json, data) {
+        Ok(json)
+    } else {
+        Err(altered())
+    }
+}
+
+fn values(tensors: &SafeTensors<'_>, name: &str) -> Result<Vec<f32>, AgentError> {
+    let tensor = tensors.tensor(name).map_err(|e| file(&e))?;
+    if tensor.dtype() != Dtype::F32 {
+        return Err(AgentError::File {
+            problem: format!("{name} is {:?}, expected F32", tensor.dtype()),
+        });
+    }
+    let four = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+    Ok(tensor.data().chunks_exact(4).map(four).collect())
+}
+
+fn file(error: &impl ToString) -> AgentError {
+    AgentError::File {
+        problem: error.to_string(),
+    }
+}

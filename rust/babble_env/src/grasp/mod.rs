@@ -1,0 +1,20 @@
+//! Grasping an object (Sect. IV).
+
+pub mod case;
+mod enclosure;
+mod episode;
+mod numbers;
+mod options;
+mod picture;
+pub mod protocol;
+mod sight;
+mod spec;
+mod task;
+
+pub use case::{GraspCase, GraspRequest};
+pub use enclosure::{Enclosure, Grip};
+pub use episode::{Drawn, FACTS, Grasp, GraspState, goal_reward};
+pub use numbers::{GraspNumbers, RegionNumbers};
+pub use options::{GraspOptions, Region};
+pub use sight::{FOVEA_NEURONS, see};
+pub use task::GraspTask;

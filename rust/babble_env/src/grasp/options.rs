@@ -1,0 +1,59 @@
+//! The choices a user makes when a grasping environment is made.
+
+use serde::{Deserialize, Serialize};
+
+use crate::choice::named_enum;
+use crate::options::{Control, Reward};
+
+named_enum!(
+    /// Where objects lie and arms start.
+    Region, "region",
+    /// Objects that the palm faces.
+    PalmSide = "palm_side",
+    /// All of the plane.
+    Full = "full"
+);
+
+impl Region {
+    /// Time limit of an episode in control steps: 12 s, or 25 s to go around the object first.
+    #[must_use]
+    pub const fn max_episode_steps(self) -> u32 {
+        match self {
+            Self::PalmSide => 240,
+            Self::Full => 500,
+        }
+    }
+}
+
+/// The choices a user makes when a grasping environment is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct GraspOptions {
+    /// Meaning of the action; not `pattern`.
+    pub control: Control,
+    /// What is rewarded.
+    pub reward: Reward,
+    /// The goal form, carrying: reward −1/0, episodes run to their time limit.
+    pub goal: bool,
+    /// Where objects lie and arms start.
+    pub region: Region,
+    /// Whether the hand closes by reflex from the first touch of the palm on, whatever the action.
+    pub enclosure_reflex: bool,
+    /// Time limit in control steps.
+    pub max_episode_steps: u32,
+    /// Whether moments are recorded, for pictures.
+    pub record: bool,
+}
+
+impl Default for GraspOptions {
+    fn default() -> Self {
+        Self {
+            control: Control::DeltaPosture,
+            reward: Reward::Progress,
+            goal: false,
+            region: Region::PalmSide,
+            enclosure_reflex: false,
+            max_episode_steps: Region::PalmSide.max_episode_steps(),
+            record: false,
+        }
+    }
+}

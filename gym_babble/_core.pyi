@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 __all__ = [
     "Association",
     "Batch",
+    "GraspHebb",
+    "GraspTask",
     "Hebb",
     "PopulationMap",
     "ReachTask",
@@ -96,9 +98,47 @@ class ReachTask:
     ) -> NDArray[np.float64]: ...
 
 @final
+class GraspTask:
+    def __new__(
+        cls,
+        config: str,
+        *,
+        control: str = "delta_posture",
+        reward: str = "progress",
+        goal: bool = False,
+        region: str = "palm_side",
+        enclosure_reflex: bool = False,
+        max_episode_steps: int | None = None,
+        record: bool = False,
+    ) -> GraspTask: ...
+    @property
+    def obstacle_radius(self) -> float: ...
+    @property
+    def ranges(self) -> list[list[float]]: ...
+    @property
+    def reflex(self) -> list[float]: ...
+    @property
+    def delta_posture(self) -> float: ...
+    def config(self) -> str: ...
+    def spec(self) -> str: ...
+    def cases(
+        self, protocol: str, n: int, seed: int, purpose: str
+    ) -> list[dict[str, Any] | None]: ...
+    def grasp_posture(self, object: tuple[float, float], radius: float) -> list[float] | None: ...  # noqa: A002 - Rust's name
+    def hold(self, diameter: float, n: int, threads: int) -> tuple[int, float, list[float]]: ...
+    def goal_reward(
+        self, achieved: NDArray[np.float32], desired: NDArray[np.float32]
+    ) -> NDArray[np.float64]: ...
+
+@final
 class Batch:
     def __new__(
-        cls, task: ReachTask, num_envs: int = 1, *, autoreset: str = "Disabled", threads: int = 1
+        cls,
+        task: ReachTask | GraspTask,
+        num_envs: int = 1,
+        *,
+        autoreset: str = "Disabled",
+        threads: int = 1,
     ) -> Batch: ...
     @property
     def threads(self) -> int: ...
@@ -143,6 +183,34 @@ class Association:
     def weights(self) -> NDArray[np.float32]: ...
     def learn(self, g: NDArray[np.float32], a: NDArray[np.float32]) -> None: ...
     def recall(self, g: NDArray[np.float32]) -> NDArray[np.float32]: ...
+
+class _GraspExperiences(TypedDict):
+    eye: NDArray[np.float32]
+    fovea: NDArray[np.float32]
+    arm: NDArray[np.float32]
+    hand: NDArray[np.float32]
+    diameter: NDArray[np.float64]
+
+@final
+class GraspHebb:
+    def __new__(cls, config: str, seed: int, threads: int) -> GraspHebb: ...
+    @staticmethod
+    def default_config() -> str: ...
+    @staticmethod
+    def load(bytes: bytes, threads: int) -> tuple[GraspHebb, str]: ...  # noqa: A002 - Rust's name
+    @property
+    def babbles(self) -> int: ...
+    @property
+    def kept(self) -> int: ...
+    def config(self) -> str: ...
+    def learn(self, task: GraspTask, n: int) -> _GraspExperiences: ...
+    def decide(
+        self, eyes: NDArray[np.float32], foveae: NDArray[np.float32]
+    ) -> NDArray[np.float64]: ...
+    def recall_arm(self, eye: list[float]) -> NDArray[np.float32]: ...
+    def recall_hand(self, fovea: NDArray[np.float32]) -> NDArray[np.float32]: ...
+    def weights(self) -> dict[str, NDArray[np.float32]]: ...
+    def save(self, config: str) -> bytes: ...
 
 @final
 class Hebb:

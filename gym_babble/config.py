@@ -30,12 +30,14 @@ __all__ = [
     "Contact",
     "Cylinder",
     "EyeConfig",
+    "GraspNumbers",
     "Grip",
     "Hand",
     "Joint",
     "Muscles",
     "Object",
     "ReachNumbers",
+    "RegionNumbers",
     "Target",
     "config_json",
 ]
@@ -241,13 +243,80 @@ class ReachNumbers:
 
 
 @dataclass(frozen=True, kw_only=True)
+class RegionNumbers:
+    """Where objects lie and arms start."""
+
+    radius_m: tuple[float, float]
+    """Distance of the object's centre from the shoulder: lowest and highest [m]."""
+    polar_deg: tuple[float, float]
+    """Direction of the object from the shoulder, counter-clockwise from x [deg]."""
+    shoulder_deg: tuple[float, float]
+    """Shoulder at the start [deg], cut to the joint range."""
+    elbow_deg: tuple[float, float]
+    """Elbow at the start [deg], cut to the joint range."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class GraspNumbers:
+    """The grasping task."""
+
+    diameters_m: tuple[float, ...] = (0.024, 0.06)
+    """Diameters of the objects [m] [F]. The 12 and 30 cm that the paper prints cannot be enclosed."""
+    any_diameter_between: bool = False
+    """Whether a diameter is drawn from all between the smallest and the largest, and not from the
+    list [C]."""
+    palm_side: RegionNumbers = field(
+        default_factory=lambda: RegionNumbers(
+            radius_m=(0.15, 0.29),
+            polar_deg=(40.0, 160.0),
+            shoulder_deg=(-75.0, -15.0),
+            elbow_deg=(5.0, 90.0),
+        )
+    )
+    """Objects on the palm's side of the arm [C]; polar 90…160°, shoulder −10…10°, elbow 15…90° in
+    profile "icub"."""
+    full: RegionNumbers = field(
+        default_factory=lambda: RegionNumbers(
+            radius_m=(0.13, 0.29),
+            polar_deg=(-20.0, 160.0),
+            shoulder_deg=(-360.0, 360.0),
+            elbow_deg=(0.0, 180.0),
+        )
+    )
+    """Objects and starts all over the plane [C]."""
+    clearance_m: float = 0.005
+    """Least distance from arm and open hand to the object at the start [m] [C]."""
+    hold_steps: int = 20
+    """Control steps over which a grasp must enclose the object, and over which it must then hold it
+    without support [C]."""
+    enclosed_share: float = 0.95
+    """Least share of physics steps with an enclosing contact before the support goes [C]."""
+    held_share: float = 0.9
+    """Share of physics steps with an enclosing contact that must be exceeded after it went [C]."""
+    palm_reach_m: float = 0.06
+    """The object counts as in the hand when its centre is on the palm's side and at most its radius
+    and this far from the palm's centre [m] [C]."""
+    success_radius_m: float = 0.02
+    """In the goal form the object is where it should be within this distance [m] [C]."""
+    delta_posture_deg: float = 5.0
+    """Change of an equilibrium point by an action of 1 in `delta_posture` control [deg] [C]."""
+    touch_max_n: float = 20.0
+    """Normal force that the sense of touch calls 1 [N] [C]."""
+    control_period_s: float = 0.05
+    """Time between two actions [s] [C]."""
+    physics_steps: int = 10
+    """Physics steps in a control period [C]. At 10 ms a step grasps slip."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Config:
-    """Body and task."""
+    """Body and tasks."""
 
     profile: str = "paper"
     """The profile that this config started from."""
     body: Body = field(default_factory=Body)
     reach: ReachNumbers = field(default_factory=ReachNumbers)
+    grasp: GraspNumbers = field(default_factory=GraspNumbers)
 
     @classmethod
     def profile_named(cls, name: str) -> Config:

@@ -20,10 +20,12 @@ class Registered:
     control: str
     reward: str
     max_episode_steps: int | None
-    """Time limit; none in `pattern` control, where each episode ends by itself after one step."""
-    reward_threshold: float
+    """Time limit of Gymnasium's wrapper; none where the core's own decides: in `pattern` control an
+    episode is one step, in grasping the limit depends on the region."""
+    reward_threshold: float | None
     """Mean return at which the task counts as solved: success in nine cases of ten (an oracle that
-    plays whole movements has a mean return of 2.66, 1, −168 and 1)."""
+    plays whole movements has a mean return of 2.66, 1, −168 and 1; a hand that goes straight to the
+    object and closes has 5.8 and 1). None where no agent of ours solves it."""
 
     @property
     def kwargs(self) -> dict[str, Any]:
@@ -31,7 +33,10 @@ class Registered:
         return {"obs": self.obs, "control": self.control, "reward": self.reward}
 
 
-ENTRY_POINTS = {"reach": ("BabbleReachEnv", "BabbleReachVectorEnv")}
+ENTRY_POINTS = {
+    "reach": ("BabbleReachEnv", "BabbleReachVectorEnv"),
+    "grasp": ("BabbleGraspEnv", "BabbleGraspVectorEnv"),
+}
 """Single and vector environment of each task, in `gym_babble.envs`."""
 
 ENVIRONMENTS = (
@@ -39,6 +44,9 @@ ENVIRONMENTS = (
     Registered("BabbleReachSparse-v0", "reach", "senses", "delta_posture", "sparse", 240, 0.9),
     Registered("BabbleReachGoal-v0", "reach", "goal", "delta_posture", "sparse", 240, -120.0),
     Registered("BabbleReachPattern-v0", "reach", "senses", "pattern", "sparse", None, 0.9),
+    Registered("BabbleGrasp-v0", "grasp", "senses", "delta_posture", "progress", None, 5.5),
+    Registered("BabbleGraspSparse-v0", "grasp", "senses", "delta_posture", "sparse", None, 0.9),
+    Registered("BabbleGraspGoal-v0", "grasp", "goal", "delta_posture", "sparse", None, None),
 )
 
 

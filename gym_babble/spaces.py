@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from gym_babble import _core
 
-    Task: TypeAlias = _core.ReachTask
+    Task: TypeAlias = _core.ReachTask | _core.GraspTask
     """A task of any kind."""
 
 __all__ = ["OBSERVATIONS", "Entry", "Spec", "as_actions", "observation_space"]

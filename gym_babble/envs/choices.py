@@ -115,8 +115,22 @@ class Choices(ABC):
         return named
 
     def goal_reward(self, achieved_goal: Any, desired_goal: Any, info: Any) -> Any:
-        """Reward for goals, of a task that has a goal form."""
-        raise NotImplementedError
+        """Reward of the goal form for goals (2,) or (..., 2) [m], broadcast; `info` is not used.
+
+        Raises:
+            ConfigError: The goals are not pairs of numbers, or their shapes do not fit.
+        """
+        del info
+        try:
+            achieved, desired = np.broadcast_arrays(
+                np.asarray(achieved_goal, np.float32), np.asarray(desired_goal, np.float32)
+            )
+        except (TypeError, ValueError) as error:
+            raise ConfigError(f"achieved_goal and desired_goal: {error}") from error
+        if achieved.shape[-1:] != (2,):
+            raise ConfigError(f"goals have shape {achieved.shape}, expected (..., 2) [m]")
+        rewards = self.task.goal_reward(achieved.reshape(-1, 2), desired.reshape(-1, 2))
+        return float(rewards[0]) if achieved.ndim == 1 else rewards.reshape(achieved.shape[:-1])
 
 
 def check_whole(name: str, value: Any, low: int, high: int, unit: str) -> None:

@@ -13,7 +13,6 @@ from gym_babble.config import BodyLike, config_json
 from gym_babble.envs.choices import Choices, check_whole, numbers
 from gym_babble.envs.single import BabbleEnv
 from gym_babble.envs.vector import BabbleVectorEnv
-from gym_babble.errors import ConfigError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -61,24 +60,6 @@ class ReachChoices(Choices):
         if isinstance(value, Sequence | np.ndarray) and len(value) == 2:
             value = (*value, self.task.obstacle_radius)
         return numbers(name, value, 3)
-
-    def goal_reward(self, achieved_goal: Any, desired_goal: Any, info: Any) -> Any:
-        """Reward of the goal form for goals (2,) or (..., 2) [m], broadcast; `info` is not used.
-
-        Raises:
-            ConfigError: The goals are not pairs of numbers, or their shapes do not fit.
-        """
-        del info
-        try:
-            achieved, desired = np.broadcast_arrays(
-                np.asarray(achieved_goal, np.float32), np.asarray(desired_goal, np.float32)
-            )
-        except (TypeError, ValueError) as error:
-            raise ConfigError(f"achieved_goal and desired_goal: {error}") from error
-        if achieved.shape[-1:] != (2,):
-            raise ConfigError(f"goals have shape {achieved.shape}, expected (..., 2) [m]")
-        rewards = self.task.goal_reward(achieved.reshape(-1, 2), desired.reshape(-1, 2))
-        return float(rewards[0]) if achieved.ndim == 1 else rewards.reshape(achieved.shape[:-1])
 
     @property
     def joint_range(self) -> NDArray[np.float64]:

@@ -10,6 +10,7 @@ use pyo3::types::{PyBytes, PyDict, PyString, PyTuple};
 
 use crate::convert::{PyTask, table};
 use crate::errors;
+use crate::grasp::GraspTask;
 use crate::reach::ReachTask;
 
 /// Indices of the environments whose episode ended, and what those episodes showed last.
@@ -19,12 +20,14 @@ type Ended<'py> = (Bound<'py, PyArray1<usize>>, Bound<'py, PyDict>);
 #[derive(FromPyObject)]
 enum AnyTask<'py> {
     Reach(Bound<'py, ReachTask>),
+    Grasp(Bound<'py, GraspTask>),
 }
 
 /// A batch of whichever task.
 #[derive(Debug)]
 enum AnyBatch {
     Reach(babble_env::Batch<babble_env::ReachTask>),
+    Grasp(babble_env::Batch<babble_env::GraspTask>),
 }
 
 /// The value of an expression about the batch, whichever its task.
@@ -32,6 +35,7 @@ macro_rules! with {
     ($any:expr, $batch:ident => $value:expr) => {
         match $any {
             AnyBatch::Reach($batch) => $value,
+            AnyBatch::Grasp($batch) => $value,
         }
     };
 }
@@ -64,6 +68,10 @@ impl Batch {
             AnyTask::Reach(task) => {
                 let task = task.get().task.clone();
                 babble_env::Batch::new(task, num_envs, autoreset, threads).map(AnyBatch::Reach)
+            }
+            AnyTask::Grasp(task) => {
+                let task = task.get().task.clone();
+                babble_env::Batch::new(task, num_envs, autoreset, threads).map(AnyBatch::Grasp)
             }
         };
         let envs = envs.map_err(errors::env)?;
@@ -114,8 +122,11 @@ impl Batch {
             .map_err(errors::env)
     }
 
-    /// One step of a batch of one, without letting go of the interpreter, as it takes microseconds.
-    fn step_one(&mut self, actions: PyReadonlyArrayDyn<'_, f32>) -> PyResult<()> {
+    /// One step of a batch of one; without letting go of the interpreter if it takes microseconds.
+    fn step_one(&mut self, py: Python<'_>, actions: PyReadonlyArrayDyn<'_, f32>) -> PyResult<()> {
+        if with!(&self.envs, batch => has_long_steps(batch)) {
+            return self.step(py, actions);
+        }
         let mut step = |actions: &[f32]| with!(&mut self.envs, batch => batch.step(actions));
         match actions.as_slice() {
             Ok(actions) => step(actions),
@@ -331,4 +342,9 @@ fn case<'py, T: PyTask>(
     i: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
     T::case(py, batch.state(i).map_err(errors::env)?)
+}
+
+/// Whether one step outlasts handing it to a thread.
+fn has_long_steps<T: Task>(_: &babble_env::Batch<T>) -> bool {
+    T::MIN_PER_THREAD == 1
 }

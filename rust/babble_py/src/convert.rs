@@ -24,6 +24,12 @@ pub(crate) trait PyTask: Task {
     ) -> PyResult<Bound<'py, PyArray2<f64>>>;
 }
 
+/// A value as JSON.
+pub(crate) fn json(value: &impl serde::Serialize) -> PyResult<String> {
+    serde_json::to_string(value)
+        .map_err(|error| pyo3::exceptions::PyRuntimeError::new_err(error.to_string()))
+}
+
 /// Rows of N numbers in a (n, N) array.
 pub(crate) fn rows<T: numpy::Element + Copy, const N: usize>(
     array: &PyReadonlyArray2<'_, T>,

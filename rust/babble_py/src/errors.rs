@@ -21,7 +21,9 @@ pub(crate) fn env(error: EnvError) -> PyErr {
             ActionError::new_err(text)
         }
         EnvError::NeedsReset { .. } => ResetNeeded::new_err(text),
-        EnvError::Case { .. } | EnvError::NoLegalCase { .. } => ScenarioError::new_err(text),
+        EnvError::Case { .. } | EnvError::NoLegalCase { .. } | EnvError::NoGraspCase { .. } => {
+            ScenarioError::new_err(text)
+        }
         EnvError::Snapshot { .. } => SnapshotError::new_err(text),
         EnvError::Threads { .. } => PyRuntimeError::new_err(text),
         _ => ConfigError::new_err(text),
@@ -33,7 +35,9 @@ pub(crate) fn agent(error: AgentError) -> PyErr {
     match error {
         AgentError::Env(error) => env(error),
         AgentError::File { .. } => AgentFileError::new_err(error.to_string()),
-        AgentError::NothingLegal { .. } => ScenarioError::new_err(error.to_string()),
+        AgentError::NothingLegal { .. } | AgentError::NothingHeld { .. } => {
+            ScenarioError::new_err(error.to_string())
+        }
         _ => ConfigError::new_err(error.to_string()),
     }
 }

@@ -44,12 +44,12 @@ impl Hebb {
     #[staticmethod]
     fn variant_config(variant: &str) -> PyResult<String> {
         let variant: Variant = variant.parse().map_err(errors::agent)?;
-        json(&HebbConfig::variant(variant))
+        convert::json(&HebbConfig::variant(variant))
     }
 
     /// Its numbers, as JSON.
     fn config(&self) -> PyResult<String> {
-        json(self.network.config())
+        convert::json(self.network.config())
     }
 
     /// Babbles on `task` until `legal` more movements were legal, and learns from them.
@@ -172,9 +172,4 @@ impl Hebb {
         };
         Ok((agent, metadata.config.to_json().map_err(errors::env)?))
     }
-}
-
-fn json(config: &HebbConfig) -> PyResult<String> {
-    serde_json::to_string(config)
-        .map_err(|error| pyo3::exceptions::PyRuntimeError::new_err(error.to_string()))
 }

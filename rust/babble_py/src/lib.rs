@@ -8,6 +8,8 @@ mod brain;
 mod config;
 mod convert;
 mod errors;
+mod grasp;
+mod grasp_hebb;
 mod hebb;
 mod reach;
 
@@ -22,6 +24,10 @@ mod _core {
     use crate::brain::{Association, PopulationMap, generator_curve};
     #[pymodule_export]
     use crate::config::{complete_config, load_config, outcomes, profile_config, profiles};
+    #[pymodule_export]
+    use crate::grasp::GraspTask;
+    #[pymodule_export]
+    use crate::grasp_hebb::GraspHebb;
     #[pymodule_export]
     use crate::hebb::Hebb;
     #[pymodule_export]

@@ -84,8 +84,7 @@ impl ReachTask {
 
     /// Observations, actions, reward terms and outcomes, as JSON.
     fn spec(&self) -> PyResult<String> {
-        serde_json::to_string(&self.task.spec())
-            .map_err(|error| pyo3::exceptions::PyRuntimeError::new_err(error.to_string()))
+        convert::json(&self.task.spec())
     }
 
     /// Cases of Table I: `n` legal movements of the full simulation.
@@ -316,7 +315,7 @@ pub(crate) const fn fidelity(quasi_static: bool) -> Fidelity {
     }
 }
 
-fn parse_purpose(name: &str) -> Result<Purpose, EnvError> {
+pub(crate) fn parse_purpose(name: &str) -> Result<Purpose, EnvError> {
     match name {
         "learning" => Ok(Purpose::Learning),
         "validation" => Ok(Purpose::Validation),

@@ -1,0 +1,183 @@
+//! The Hebb agent of grasping: its network and its babbling.
+
+use babble_agent::grasp::{self, GraspBabbling, GraspHebbConfig};
+use babble_env::grasp::FOVEA_NEURONS;
+use babble_env::{Config, Pool};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+
+use crate::grasp::GraspTask;
+use crate::{convert, errors};
+
+/// What babbling leaves behind: eye (n, 2), fovea (n, 441), arm (n, 2), hand (n, 2) and diameter
+/// (n,).
+type Experiences<'py> = Bound<'py, PyDict>;
+
+/// A network that learns by babbling with the object in the hand.
+#[pyclass(module = "gym_babble._core")]
+#[derive(Debug)]
+pub(crate) struct GraspHebb {
+    network: grasp::GraspHebb,
+    babbling: GraspBabbling,
+    pool: Pool,
+}
+
+#[pymethods]
+impl GraspHebb {
+    /// A network that has learnt nothing; `config` is JSON, complete.
+    #[new]
+    fn new(config: &str, seed: u64, threads: usize) -> PyResult<Self> {
+        let config: GraspHebbConfig = serde_json::from_str(config)
+            .map_err(|error| errors::ConfigError::new_err(format!("agent config: {error}")))?;
+        Ok(Self {
+            network: grasp::GraspHebb::new(config).map_err(errors::agent)?,
+            babbling: GraspBabbling::new(seed),
+            pool: Pool::new(threads).map_err(errors::env)?,
+        })
+    }
+
+    /// The paper's numbers, as JSON.
+    #[staticmethod]
+    fn default_config() -> PyResult<String> {
+        convert::json(&GraspHebbConfig::default())
+    }
+
+    /// Its numbers, as JSON.
+    fn config(&self) -> PyResult<String> {
+        convert::json(self.network.config())
+    }
+
+    /// Babbles on `task` until `n` more objects were kept, learns from them, and returns them.
+    fn learn<'py>(
+        &mut self,
+        py: Python<'py>,
+        task: &GraspTask,
+        n: usize,
+    ) -> PyResult<Experiences<'py>> {
+        let task: &babble_env::GraspTask = &task.task;
+        let found = py
+            .detach(|| {
+                let found = self.babbling.experience(task, n, &mut self.pool)?;
+                let network = &mut self.network;
+                self.pool.run(|| network.learn(&found))??;
+                Ok(found)
+            })
+            .map_err(errors::agent)?;
+        let dict = PyDict::new(py);
+        let pairs = |of: fn(&grasp::Experience) -> [f32; 2]| {
+            convert::array2(py, &found.iter().map(of).collect::<Vec<_>>())
+        };
+        dict.set_item("eye", pairs(|e| e.eye)?)?;
+        dict.set_item("arm", pairs(|e| e.arm)?)?;
+        dict.set_item("hand", pairs(|e| e.hand)?)?;
+        let fovea = found.iter().map(|e| &e.fovea[..]);
+        dict.set_item("fovea", convert::table(py, FOVEA_NEURONS, fovea)?)?;
+        let diameters = found.iter().map(|e| e.diameter);
+        dict.set_item("diameter", PyArray1::from_iter(py, diameters))?;
+        Ok(dict)
+    }
+
+    /// Postures (n, 4) for eyes (n, 2) and foveae (n, 441): shares of the ranges of shoulder and
+    /// elbow, and equilibrium points of thumb and finger, EP = 90° − flexion \[deg\].
+    fn decide<'py>(
+        &self,
+        py: Python<'py>,
+        eyes: PyReadonlyArray2<'py, f32>,
+        foveae: PyReadonlyArray2<'py, f32>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let eyes = convert::rows::<f32, 2>(&eyes, "eye")?;
+        let foveae = convert::rows::<f32, FOVEA_NEURONS>(&foveae, "fovea")?;
+        let decide = |(eye, fovea): (&[f32; 2], &[f32; FOVEA_NEURONS])| {
+            let recalled = self.network.decide(*eye, fovea)?;
+            let ([q1, q2], [thumb, finger]) = (recalled.arm, recalled.hand);
+            Ok([q1, q2, thumb, finger])
+        };
+        let postures: Vec<[f64; 4]> = py
+            .detach(|| {
+                eyes.iter()
+                    .zip(&foveae)
+                    .map(decide)
+                    .collect::<Result<_, _>>()
+            })
+            .map_err(errors::agent)?;
+        convert::array2(py, &postures)
+    }
+
+    /// Activity of the arm's map (21, 21), rows elbow, columns shoulder, for an eye posture.
+    fn recall_arm<'py>(
+        &self,
+        py: Python<'py>,
+        eye: [f32; 2],
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let a = self.network.recall_arm(eye).map_err(errors::agent)?;
+        self.square(py, a)
+    }
+
+    /// Activity of the hand's map (21, 21), rows finger, columns thumb, for a fovea (441,).
+    fn recall_hand<'py>(
+        &self,
+        py: Python<'py>,
+        fovea: PyReadonlyArray1<'py, f32>,
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let a = self.network.recall_hand(fovea.as_slice()?);
+        self.square(py, a.map_err(errors::agent)?)
+    }
+
+    /// The weights `w_ji` (outputs, inputs) and the running averages, as copies.
+    fn weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for (name, w) in [
+            ("reach", self.network.reach()),
+            ("grasp", self.network.grasp()),
+        ] {
+            let weights = PyArray1::from_slice(py, w.weights()).reshape([w.n_out(), w.n_in()])?;
+            dict.set_item(format!("{name}.weights"), weights)?;
+            dict.set_item(format!("{name}.a_bar"), PyArray1::from_slice(py, w.a_bar()))?;
+            dict.set_item(format!("{name}.g_bar"), PyArray1::from_slice(py, w.g_bar()))?;
+        }
+        Ok(dict)
+    }
+
+    /// Babbles made.
+    #[getter]
+    fn babbles(&self) -> u64 {
+        self.babbling.babbles()
+    }
+
+    /// In how many of them the hand kept the object.
+    #[getter]
+    fn kept(&self) -> u64 {
+        self.babbling.kept()
+    }
+
+    /// The agent as the bytes of a safetensors file; `config` is the JSON of body and task.
+    fn save<'py>(&self, py: Python<'py>, config: &str) -> PyResult<Bound<'py, PyBytes>> {
+        let config = Config::from_json(config).map_err(errors::env)?;
+        let bytes = grasp::save(&self.network, &self.babbling, config).map_err(errors::agent)?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// The agent in the bytes of a safetensors file, and the JSON of the body and task it learnt on.
+    #[staticmethod]
+    fn load(bytes: &[u8], threads: usize) -> PyResult<(Self, String)> {
+        let (network, babbling, config) = grasp::load(bytes).map_err(errors::agent)?;
+        let agent = Self {
+            network,
+            babbling,
+            pool: Pool::new(threads).map_err(errors::env)?,
+        };
+        Ok((agent, config.to_json().map_err(errors::env)?))
+    }
+}
+
+impl GraspHebb {
+    fn square<'py>(
+        &self,
+        py: Python<'py>,
+        activity: Vec<f32>,
+    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let side = self.network.config().neurons;
+        PyArray1::from_vec(py, activity).reshape([side, side])
+    }
+}

@@ -65,6 +65,13 @@ fn centroid(c: &mut Criterion) {
     c.bench_function("red centroid, behind the arm", |b| {
         b.iter(|| red_centroid(black_box(&hidden), &camera));
     });
+    let camera = eye.camera(eye.fixate(&eye_scene::grasped()));
+    for (name, across) in [("beside", 0.06), ("over", 0.0)] {
+        let scene = eye_scene::grasping(across);
+        c.bench_function(&format!("red centroid of 42 pixels, hand {name}"), |b| {
+            b.iter(|| red_centroid(black_box(&scene), &camera));
+        });
+    }
 }
 
 fn reflex(c: &mut Criterion) {

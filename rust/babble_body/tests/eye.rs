@@ -175,6 +175,31 @@ proptest! {
         }
     }
 
+    /// Fingers across a ball 26 cm from the eye, as in a grasp. Catches an
+    /// occluder that is left out beside the ball or for its depth, and a ball
+    /// that is counted where it is hidden.
+    #[test]
+    fn centroid_behind_a_hand_is_that_of_the_image(
+        across in -0.08..0.08,
+        fingers in proptest::collection::vec(([-1.0..1.0, -1.0..1.0], 0.0..3.2, 0.02..0.2), 0..12),
+    ) {
+        let ball = eye_scene::grasped();
+        let eye = Eye::new(EyeConfig::helmholtz()).unwrap();
+        let camera = eye.camera(eye.fixate(&ball));
+        let mut scene = eye_scene::grasping(across);
+        scene.extend(fingers.into_iter().map(|([x, y], turn, lift): ([f64; 2], f64, f64)| {
+            let middle = ball + (camera.position - ball) * lift + Vector3::new(x, y, 0.0) * 0.04;
+            let half = Vector3::new(turn.cos(), turn.sin(), 0.2) * 0.03;
+            let shape = Shape::Capsule { a: middle - half, b: middle + half, radius: 0.007 };
+            Primitive::new(shape, Material::plain([240, 205, 160]))
+        }));
+        let picture = render_rgb(&scene, &camera);
+        let red = centroid_where(&camera, |i, j| {
+            is_red(picture.get_pixel(i as u32, j as u32).0)
+        });
+        prop_assert_eq!(red_centroid(&scene, &camera), red);
+    }
+
     /// A lone ball, also across the border: rows in closed form.
     #[test]
     fn centroid_of_a_lone_ball_is_that_of_the_image(
@@ -235,6 +260,38 @@ fn a_capsule_in_front_hides_the_target() {
     // Half hidden from the left: what is left lies to the right of the middle.
     let half = seen(bar(-0.035, 0.05)).unwrap();
     assert!(half[0] > free.unwrap()[0] + 1.0, "{half:?}");
+}
+
+/// Catches pixels that are seen through the seams of a hand: between the parts
+/// of a capsule, or between capsules that touch.
+#[test]
+fn a_hand_hides_a_ball_completely() {
+    let ball = eye_scene::grasped();
+    let eye = Eye::new(EyeConfig::helmholtz()).unwrap();
+    let camera = eye.camera(eye.fixate(&ball));
+    let [right, up] = [0, 1].map(|row| camera.rotation.row(row).transpose());
+    let middle = ball + (camera.position - ball) * 0.4;
+    let mut scene = vec![Primitive::target(ball, 0.03)];
+    for k in -3..=3 {
+        let finger = middle + right * 0.008 * f64::from(k);
+        for joints in [[-0.03, -0.007], [-0.007, 0.006], [0.006, 0.03]] {
+            let [a, b] = joints.map(|at| finger + up * at);
+            let shape = Shape::Capsule {
+                a,
+                b,
+                radius: 0.006,
+            };
+            scene.push(Primitive::new(shape, Material::plain([240, 205, 160])));
+        }
+    }
+    assert_eq!(red_centroid(&scene, &camera), None);
+    // Without the last bones of the fingers, the ball is seen beside them.
+    let open = scene
+        .iter()
+        .enumerate()
+        .filter(|(k, _)| *k == 0 || k % 3 != 0);
+    let open: Vec<_> = open.map(|(_, primitive)| primitive.clone()).collect();
+    assert!(red_centroid(&open, &camera).is_some());
 }
 
 #[test]

@@ -1,8 +1,9 @@
 //! Centroid of the red pixels: O of Eq. 1.
 
-use super::piece::{Cutter, Piece, Surface};
-use super::raster::{Buffer, ball_columns};
+use super::piece::{Cutter, Piece};
+use super::raster::Buffer;
 use super::row::Lens;
+use super::surface::Surface;
 use super::window::Window;
 use super::{Pinhole, Primitive};
 
@@ -21,6 +22,13 @@ impl Pixels {
         let count = end as f64 - first as f64;
         self.count += count;
         self.x += 0.5 * count * (first + end) as f64;
+        self.y += count * (j as f64 + 0.5);
+    }
+
+    /// Adds some pixels of row j, `sum` of their columns counted from `first`.
+    fn add_row(&mut self, [count, sum]: [f64; 2], first: usize, j: usize) {
+        self.count += count;
+        self.x += count * (first as f64 + 0.5) + sum;
         self.y += count * (j as f64 + 0.5);
     }
 
@@ -45,6 +53,7 @@ pub fn red_centroid(scene: &[Primitive], camera: &Pinhole) -> Option<[f64; 2]> {
         .reduce(|all, window| all.hull(&window))?;
     let red = cutter.pieces.len();
     let farthest = farthest(&cutter.pieces);
+    cutter.look_at(window);
     for (index, primitive) in scene.iter().enumerate() {
         if !primitive.material.target {
             cutter.cut(index, &primitive.shape);
@@ -77,7 +86,7 @@ fn farthest(pieces: &[Piece]) -> f64 {
     pieces
         .iter()
         .map(|piece| match &piece.surface {
-            Surface::Ball(ball) => 1.0 / (ball.centre.z + ball.radius),
+            Surface::Ball(ball, _) => 1.0 / (ball.centre.z + ball.radius),
             _ => 0.0,
         })
         .fold(f64::INFINITY, f64::min)
@@ -85,16 +94,11 @@ fn farthest(pieces: &[Piece]) -> f64 {
 
 /// Centroid of a piece that nothing hides: a ball's rows in closed form.
 fn lone(piece: &Piece, lens: &Lens) -> Option<[f64; 2]> {
-    let Surface::Ball(ball) = &piece.surface else {
+    if !matches!(piece.surface, Surface::Ball(..)) {
         return drawn(std::slice::from_ref(piece), [].iter(), piece.window, lens);
-    };
-    let mut pixels = Pixels::default();
-    for j in piece.window.rows.0..piece.window.rows.1 {
-        let columns = ball_columns(ball, j, lens);
-        if columns.0 < columns.1 {
-            pixels.add(columns, j);
-        }
     }
+    let mut pixels = Pixels::default();
+    piece.rows(&piece.window, lens, |j, columns| pixels.add(columns, j));
     pixels.centroid()
 }
 
@@ -113,11 +117,15 @@ fn drawn<'a>(
         buffer.draw(0, piece, lens);
     }
     let mut pixels = Pixels::default();
-    let rows = buffer.piece.chunks_exact(window.width());
-    for (j, row) in (window.rows.0..).zip(rows) {
-        for (i, _) in (window.columns.0..).zip(row).filter(|(_, id)| **id == 0) {
-            pixels.add((i, i + 1), j);
+    for j in window.rows.0..window.rows.1 {
+        let (row, _) = buffer.span(j, window.columns);
+        // Selected, not branched on, so that the loop runs in vectors.
+        let (mut count, mut sum) = (0_u32, 0_u32);
+        for (k, id) in (0_u32..).zip(row.iter()) {
+            count += u32::from(*id == 0);
+            sum += if *id == 0 { k } else { 0 };
         }
+        pixels.add_row([count, sum].map(f64::from), window.columns.0, j);
     }
     pixels.centroid()
 }

@@ -1,8 +1,9 @@
 //! The checker of the ground: runs of one colour along a row.
 
-use super::light::{Swatch, fill, swatch};
-use super::piece::Flat;
-use super::row::{Lens, along_row};
+use super::ink::Ink;
+use super::light::{Swatch, swatch};
+use super::row::Lens;
+use super::surface::Flat;
 
 /// A checkered ground in the camera frame.
 #[derive(Debug, Clone)]
@@ -42,7 +43,14 @@ impl Checker {
     }
 
     /// Paints the columns [first, end) of a row; `pixels` begins at `first`.
-    pub(super) fn paint(&self, pixels: &mut [u8], first: usize, end: usize, y: f64, lens: &Lens) {
+    pub(super) fn paint<I: Ink>(
+        &self,
+        pixels: &mut [I],
+        first: usize,
+        end: usize,
+        y: f64,
+        lens: &Lens,
+    ) {
         let w = along_row(&self.w, y);
         let [mut x, mut y] = [&self.x, &self.y]
             .map(|form| Crossings::from_column(along_row(form, y), w, first, lens));
@@ -50,8 +58,8 @@ impl Checker {
         let mut odd = (x.square + y.square) & 1 == 1;
         while column < end {
             let next = x.next.min(y.next).min(end);
-            let run = 3 * (column - first)..3 * (next - first);
-            fill(&mut pixels[run], &self.swatches[usize::from(odd)]);
+            let run = column - first..next - first;
+            I::fill(&mut pixels[run], &self.swatches[usize::from(odd)]);
             for axis in [&mut x, &mut y] {
                 if axis.next == next {
                     axis.advance(lens);
@@ -61,6 +69,11 @@ impl Checker {
             column = next;
         }
     }
+}
+
+/// A linear form along a row: [slope, offset] in X.
+fn along_row(form: &nalgebra::Vector3<f64>, y: f64) -> [f64; 2] {
+    [form.x, form.y * y + form.z]
 }
 
 /// The edges of squares that a row crosses along one coordinate of the ground.

@@ -9,11 +9,14 @@
 mod camera;
 mod centroid;
 mod config;
+mod depth;
 mod error;
 mod fovea;
 mod gaze;
 mod ground;
+mod ink;
 mod light;
+mod outline;
 mod piece;
 mod raster;
 mod reflex;
@@ -21,6 +24,7 @@ mod row;
 mod scene;
 mod shading;
 mod shadow;
+mod surface;
 mod view;
 mod window;
 

@@ -1,101 +1,13 @@
-//! A primitive, taken apart into surfaces that each have a closed form along
-//! a row of pixels: ball, cylinder side, rectangle and ellipse.
+//! A primitive, taken apart into surfaces, each in a window.
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::row::{Cone, Lens};
-use super::window::{Window, ball_window, corners_window};
+use super::depth::Depth;
+use super::outline::Outline;
+use super::row::{Lens, Origin};
+use super::surface::{Ends, Flat, Quadric, Surface};
+use super::window::{Frustum, Window, ball_window, corners_window, meet};
 use super::{Pinhole, Primitive, Shape};
-
-/// A ball or the side of a cylinder. Its inverse depth is
-/// w = l · d + √((l · d)² − dᵀ Q d), the nearer of the two intersections.
-#[derive(Debug, Clone)]
-pub(super) struct Quadric {
-    pub(super) cone: Cone,
-    /// Centre of the ball, or a point on the axis, in the camera frame \[m\].
-    pub(super) centre: Vector3<f64>,
-    /// Identity for a ball; projection along the axis for a cylinder.
-    pub(super) across: Matrix3<f64>,
-    pub(super) radius: f64,
-}
-
-impl Quadric {
-    /// `None` if the camera is inside.
-    fn new(centre: Vector3<f64>, across: Matrix3<f64>, radius: f64) -> Option<Self> {
-        let nearest = across * centre;
-        let power = nearest.norm_squared() - radius * radius;
-        (power > 0.0).then(|| Self {
-            cone: Cone {
-                linear: nearest / power,
-                form: across / power,
-            },
-            centre,
-            across,
-            radius,
-        })
-    }
-}
-
-/// Where a cylinder's side ends: 0 ≤ along · d − start w ≤ w.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Ends {
-    pub(super) along: Vector3<f64>,
-    pub(super) start: f64,
-}
-
-/// A flat surface with inverse depth w · d and two coordinates (u · d) / (w · d)
-/// and (v · d) / (w · d), which are ±1 at its edges.
-#[derive(Debug, Clone)]
-pub(super) struct Flat {
-    pub(super) w: Vector3<f64>,
-    pub(super) u: Vector3<f64>,
-    pub(super) v: Vector3<f64>,
-    /// Unit normal towards the camera, in the camera frame.
-    pub(super) normal: Vector3<f64>,
-}
-
-impl Flat {
-    /// The parallelogram or ellipse with the given centre and half axes in the
-    /// camera frame; `None` if its front, the side of `outward`, is hidden.
-    pub(super) fn new(
-        centre: Vector3<f64>,
-        [a, b]: [Vector3<f64>; 2],
-        outward: Vector3<f64>,
-    ) -> Option<Self> {
-        let distance = outward.dot(&centre);
-        let normal = a.cross(&b);
-        let area = normal.norm_squared();
-        if distance >= 0.0 || area == 0.0 {
-            return None;
-        }
-        let w = outward / distance;
-        // Reciprocal vectors of the half axes within the plane.
-        let (a_dual, b_dual) = (b.cross(&normal) / area, normal.cross(&a) / area);
-        Some(Self {
-            w,
-            u: a_dual - w * a_dual.dot(&centre),
-            v: b_dual - w * b_dual.dot(&centre),
-            normal: outward,
-        })
-    }
-
-    /// The cone through the ellipse u² + v² = w².
-    pub(super) fn cone(&self) -> Cone {
-        Cone {
-            linear: self.w,
-            form: self.u * self.u.transpose() + self.v * self.v.transpose(),
-        }
-    }
-}
-
-/// A surface in the camera frame.
-#[derive(Debug, Clone)]
-pub(super) enum Surface {
-    Ball(Quadric),
-    Side(Quadric, Ends),
-    Rectangle(Flat),
-    Ellipse(Flat, Cone),
-}
 
 /// A surface of a primitive and the pixels that it can fall on.
 #[derive(Debug, Clone)]
@@ -104,46 +16,83 @@ pub(super) struct Piece {
     pub(super) primitive: usize,
     pub(super) window: Window,
     pub(super) surface: Surface,
+    /// The middle of the window, from which outline and depth count.
+    pub(super) origin: Origin,
+    pub(super) outline: Outline,
+    pub(super) depth: Depth,
 }
 
 impl Piece {
-    /// The largest inverse depth it can have in a window.
-    pub(super) fn nearest_in(&self, window: &Window, lens: &Lens) -> f64 {
-        match &self.surface {
-            Surface::Rectangle(flat) | Surface::Ellipse(flat, _) => {
-                let (left, right) = (window.columns.0, window.columns.1.max(1) - 1);
-                let (top, bottom) = (window.rows.0, window.rows.1.max(1) - 1);
-                [(left, top), (left, bottom), (right, top), (right, bottom)]
-                    .map(|(i, j)| flat.w.dot(&Vector3::new(lens.x(i), lens.y(j), 1.0)))
-                    .into_iter()
-                    .fold(0.0, f64::max)
+    /// The columns in which it is seen, row by row. `see` takes a row and its columns.
+    #[inline]
+    pub(super) fn rows(
+        &self,
+        within: &Window,
+        lens: &Lens,
+        mut see: impl FnMut(usize, (usize, usize)),
+    ) {
+        // Some rows at a time: what is done with a row depends on its columns
+        // in ways that a processor cannot foresee, so they must be there early.
+        const ROWS: usize = 16;
+        let mut intervals = [[0.0; 2]; ROWS];
+        let mut columns = [(0, 0); ROWS];
+        let mut first = within.rows.0;
+        while first < within.rows.1 {
+            let count = ROWS.min(within.rows.1 - first);
+            let y = first as f64 - self.origin.row as f64;
+            self.outline.intervals(y, &mut intervals[..count]);
+            for (columns, interval) in columns.iter_mut().zip(&intervals[..count]) {
+                *columns = meet(lens.columns_from(&self.origin, *interval), within.columns);
             }
-            Surface::Ball(ball) => inverse(ball.centre.z - ball.radius),
-            Surface::Side(..) => f64::INFINITY,
+            for (j, columns) in (first..).zip(&columns[..count]) {
+                if columns.0 < columns.1 {
+                    see(j, *columns);
+                }
+            }
+            first += count;
         }
     }
-}
 
-/// 1 / z, infinite for points beside or behind the camera.
-fn inverse(z: f64) -> f64 {
-    if z > 0.0 { 1.0 / z } else { f64::INFINITY }
+    /// The largest inverse depth it can have in a window.
+    pub(super) fn nearest_in(&self, window: &Window, lens: &Lens) -> f64 {
+        let above = self.surface.nearest();
+        let (left, right) = (window.columns.0, window.columns.1.max(1) - 1);
+        let (top, bottom) = (window.rows.0, window.rows.1.max(1) - 1);
+        [(left, top), (left, bottom), (right, top), (right, bottom)]
+            .map(|(i, j)| above.dot(&Vector3::new(lens.x(i), lens.y(j), 1.0)))
+            .into_iter()
+            .fold(0.0, f64::max)
+    }
 }
 
 /// Takes primitives apart for one camera.
 pub(super) struct Cutter<'a> {
     pub(super) camera: &'a Pinhole,
     pub(super) lens: Lens,
+    /// Pieces that cannot fall into this window are left out.
+    pub(super) view: Window,
+    frustum: Frustum,
     /// The visible pieces so far.
     pub(super) pieces: Vec<Piece>,
 }
 
 impl<'a> Cutter<'a> {
     pub(super) fn new(camera: &'a Pinhole) -> Self {
+        let lens = Lens::new(camera);
+        let view = Window::frame(&lens);
         Self {
             camera,
-            lens: Lens::new(camera),
+            lens,
+            view,
+            frustum: Frustum::new(&lens, &view),
             pieces: Vec::new(),
         }
+    }
+
+    /// Leaves out what does not fall into a window from now on.
+    pub(super) fn look_at(&mut self, view: Window) {
+        self.view = view;
+        self.frustum = Frustum::new(&self.lens, &view);
     }
 
     /// Adds the pieces of one primitive.
@@ -151,7 +100,7 @@ impl<'a> Cutter<'a> {
         match shape {
             Shape::Sphere { centre, radius } => {
                 let centre = self.camera.camera_from_world(centre);
-                self.ball(primitive, centre, *radius);
+                self.ball(primitive, centre, *radius, None);
             }
             Shape::Capsule { a, b, radius } => {
                 let (a, b) = self.ends(a, b);
@@ -167,8 +116,10 @@ impl<'a> Cutter<'a> {
                 half_extents,
             } => {
                 let centre = self.camera.camera_from_world(centre);
-                let axes = self.camera.rotation * rotation;
-                self.cuboid(primitive, centre, &axes, half_extents);
+                if !self.frustum.misses(&[centre], half_extents.norm()) {
+                    let axes = self.camera.rotation * rotation;
+                    self.cuboid(primitive, centre, &axes, half_extents);
+                }
             }
             Shape::Ground {
                 height,
@@ -189,19 +140,39 @@ impl<'a> Cutter<'a> {
     }
 
     fn push(&mut self, primitive: usize, window: Window, surface: Surface) {
-        if !window.is_empty() {
-            self.pieces.push(Piece {
-                primitive,
-                window,
-                surface,
-            });
-        }
+        let origin = Origin::middle(&window, &self.lens);
+        let (outline, depth) = surface.forms(&origin);
+        self.pieces.push(Piece {
+            primitive,
+            window,
+            surface,
+            origin,
+            outline,
+            depth,
+        });
     }
 
-    fn ball(&mut self, primitive: usize, centre: Vector3<f64>, radius: f64) {
+    pub(super) fn sees(&self, window: &Window) -> bool {
+        !window.overlap(&self.view).is_empty()
+    }
+
+    /// A ball, or with `outward` the half of one on the side of that vector.
+    fn ball(
+        &mut self,
+        primitive: usize,
+        centre: Vector3<f64>,
+        radius: f64,
+        outward: Option<Vector3<f64>>,
+    ) {
+        if self.frustum.misses(&[centre], radius) {
+            return;
+        }
         let window = ball_window(&self.lens, &centre, radius);
+        if !self.sees(&window) {
+            return;
+        }
         if let Some(quadric) = Quadric::new(centre, Matrix3::identity(), radius) {
-            self.push(primitive, window, Surface::Ball(quadric));
+            self.push(primitive, window, Surface::Ball(quadric, outward));
         }
     }
 
@@ -223,11 +194,15 @@ impl<'a> Cutter<'a> {
     }
 
     fn capsule(&mut self, primitive: usize, [a, b]: [Vector3<f64>; 2], radius: f64) {
+        if self.frustum.misses(&[a, b], radius) {
+            return;
+        }
         let window = self.capsule_window(&a, &b, radius);
-        if distance_to_segment(&a, &b) > radius && !window.is_empty() {
+        if distance_to_segment(&a, &b) > radius && self.sees(&window) {
             self.side(primitive, window, [a, b], radius);
-            self.ball(primitive, a, radius);
-            self.ball(primitive, b, radius);
+            let outward = (b - a).try_normalize(0.0);
+            self.ball(primitive, a, radius, outward.map(|axis| -axis));
+            self.ball(primitive, b, radius, outward);
         }
     }
 
@@ -238,11 +213,13 @@ impl<'a> Cutter<'a> {
         let [u, v] = perpendicular(&axis).map(|unit| unit * radius);
         let corners = [a, b].map(|end| [end + u + v, end + u - v, end - u + v, end - u - v]);
         let window = corners_window(&self.lens, corners.as_flattened());
+        if !self.sees(&window) {
+            return;
+        }
         self.side(primitive, window, [a, b], radius);
         for (end, outward) in [(a, -axis), (b, axis)] {
             if let Some(flat) = Flat::new(end, [u, v], outward) {
-                let cone = flat.cone();
-                self.push(primitive, window, Surface::Ellipse(flat, cone));
+                self.push(primitive, window, Surface::Ellipse(flat));
             }
         }
     }
@@ -279,8 +256,14 @@ impl<'a> Cutter<'a> {
         half: [Vector3<f64>; 2],
         outward: Vector3<f64>,
     ) {
+        if outward.dot(&centre) >= 0.0 {
+            return;
+        }
+        let window = self.flat_window(&centre, half);
+        if !self.sees(&window) {
+            return;
+        }
         if let Some(flat) = Flat::new(centre, half, outward) {
-            let window = self.flat_window(&centre, half);
             self.push(primitive, window, Surface::Rectangle(flat));
         }
     }
@@ -300,10 +283,17 @@ impl<'a> Cutter<'a> {
     }
 }
 
-/// Takes every primitive apart.
-pub(super) fn cut_scene<'a>(scene: &[Primitive], camera: &'a Pinhole) -> Cutter<'a> {
+/// Takes every primitive apart that can be seen in a window.
+pub(super) fn cut_scene<'a>(
+    scene: &[Primitive],
+    camera: &'a Pinhole,
+    view: Option<Window>,
+) -> Cutter<'a> {
     let mut cutter = Cutter::new(camera);
-    cutter.pieces.reserve(4 * scene.len());
+    if let Some(view) = view {
+        cutter.look_at(view);
+    }
+    cutter.pieces.reserve(scene.len());
     for (index, primitive) in scene.iter().enumerate() {
         cutter.cut(index, &primitive.shape);
     }

@@ -1,19 +1,22 @@
 //! The window rasteriser: surfaces drawn row by row into a depth buffer.
 
-use nalgebra::Vector3;
-
-use super::piece::{Cutter, Ends, Flat, Piece, Quadric, Surface, cut_scene};
-use super::row::{Cone, Lens, NOWHERE, along_row, clip};
+use super::depth::Depth;
+use super::piece::{Cutter, Piece, cut_scene};
+use super::row::{Lens, offset};
 use super::window::Window;
 use super::{Pinhole, Primitive};
 
 /// No surface at a pixel.
 pub(super) const NOTHING: u32 = u32::MAX;
 
+/// Pixels drawn at a time. The last ones of a run may be beyond its end and
+/// are left as they are.
+const LANES: usize = 4;
+
 /// What is seen at each pixel of a window, as pieces and inverse depths.
 pub(super) struct Buffer {
     pub(super) window: Window,
-    /// Index of the piece or [`NOTHING`], row-major.
+    /// Index of the piece or [`NOTHING`], row-major; [`LANES`] more at the end.
     pub(super) piece: Vec<u32>,
     /// 1 / depth \[1/m\], 0 where there is nothing.
     pub(super) inverse_depth: Vec<f32>,
@@ -21,19 +24,23 @@ pub(super) struct Buffer {
 
 impl Buffer {
     pub(super) fn new(window: Window) -> Self {
-        let pixels = window.width() * window.height();
-        Self {
+        let mut buffer = Self {
             window,
-            piece: vec![NOTHING; pixels],
-            inverse_depth: vec![0.0; pixels],
-        }
+            piece: Vec::new(),
+            inverse_depth: Vec::new(),
+        };
+        buffer.move_to(window.rows);
+        buffer
     }
 
-    /// Empties the buffer and moves it to rows from `first` on.
+    /// Empties the buffer and moves it to other rows.
     pub(super) fn move_to(&mut self, rows: (usize, usize)) {
         self.window.rows = rows;
-        self.piece.fill(NOTHING);
-        self.inverse_depth.fill(0.0);
+        let pixels = self.window.width() * self.window.height() + LANES;
+        self.piece.clear();
+        self.piece.resize(pixels, NOTHING);
+        self.inverse_depth.clear();
+        self.inverse_depth.resize(pixels, 0.0);
     }
 
     /// Draws a piece, keeping what is nearer.
@@ -42,20 +49,27 @@ impl Buffer {
         if part.is_empty() {
             return;
         }
-        for j in part.rows.0..part.rows.1 {
-            match &piece.surface {
-                Surface::Ball(ball) => self.ball_row(id, ball, j, part.columns, lens),
-                Surface::Side(side, ends) => self.side_row(id, (side, ends), j, part.columns, lens),
-                Surface::Rectangle(flat) => {
-                    let interval = rectangle_interval(flat, lens.y(j));
-                    self.flat_row(id, (&flat.w, interval), j, part.columns, lens);
-                }
-                Surface::Ellipse(flat, cone) => {
-                    let interval = ellipse_interval(cone, lens.y(j));
-                    self.flat_row(id, (&flat.w, interval), j, part.columns, lens);
-                }
-            }
+        match &piece.depth {
+            Depth::Flat(flat) => self.rows(id, piece, part, lens, |y| flat.row(y)),
+            Depth::Ball(ball) => self.rows(id, piece, part, lens, |y| ball.row(y)),
+            Depth::Side(side) => self.rows(id, piece, part, lens, |y| side.row(y)),
         }
+    }
+
+    /// Draws the rows of a part, whose inverse depths `row` gives.
+    #[inline]
+    fn rows<Row: Fn(f32) -> f32>(
+        &mut self,
+        id: u32,
+        piece: &Piece,
+        part: Window,
+        lens: &Lens,
+        row: impl Fn(f32) -> Row,
+    ) {
+        piece.rows(&part, lens, |j, columns| {
+            let y = offset(j, piece.origin.row);
+            self.keep_nearer(id, j, columns, piece.origin.column, row(y));
+        });
     }
 
     /// The pixels of a row, from the first column in `interval` on.
@@ -69,47 +83,6 @@ impl Buffer {
         )
     }
 
-    fn ball_row(&mut self, id: u32, ball: &Quadric, j: usize, within: (usize, usize), lens: &Lens) {
-        if let Some((row, columns)) = quadric_row(&ball.cone, j, within, lens) {
-            self.keep_nearer(id, j, columns, row.origin, |delta| row.inverse_depth(delta));
-        }
-    }
-
-    fn side_row(
-        &mut self,
-        id: u32,
-        (side, ends): (&Quadric, &Ends),
-        j: usize,
-        within: (usize, usize),
-        lens: &Lens,
-    ) {
-        let Some((row, columns)) = quadric_row(&side.cone, j, within, lens) else {
-            return;
-        };
-        let [along, along_step] = lens.linear_about(&ends.along, lens.y(j), row.origin);
-        let start = ends.start as f32;
-        self.keep_nearer(id, j, columns, row.origin, |delta| {
-            let w = row.inverse_depth(delta);
-            let place = along + along_step * delta - start * w;
-            if place >= 0.0 && place <= w { w } else { 0.0 }
-        });
-    }
-
-    fn flat_row(
-        &mut self,
-        id: u32,
-        (w, interval): (&Vector3<f64>, [f64; 2]),
-        j: usize,
-        within: (usize, usize),
-        lens: &Lens,
-    ) {
-        let columns = meet(lens.columns(interval), within);
-        if columns.0 < columns.1 {
-            let [start, step] = lens.linear_about(w, lens.y(j), 0);
-            self.keep_nearer(id, j, columns, 0, |delta| start + step * delta);
-        }
-    }
-
     /// Draws a surface into columns of row j where it is nearer than what is
     /// there. `inverse_depth` takes the number of columns from `origin`.
     #[inline]
@@ -121,82 +94,50 @@ impl Buffer {
         origin: usize,
         inverse_depth: impl Fn(f32) -> f32,
     ) {
-        let (pieces, depths) = self.span(j, columns);
-        let first = columns.0 as f32 - origin as f32;
-        for (k, (piece, depth)) in (0_i32..).zip(pieces.iter_mut().zip(depths)) {
-            // Selected, not branched on, so that the loop runs in vectors.
-            let w = inverse_depth(first + k as f32);
-            let nearer = w > *depth;
-            *depth = if nearer { w } else { *depth };
-            *piece = if nearer { id } else { *piece };
+        let count = columns.1 - columns.0;
+        let whole = (columns.0, columns.0 + count.next_multiple_of(LANES));
+        let mut x = offset(columns.0, origin);
+        let (pieces, depths) = self.span(j, whole);
+        let (pieces, _) = pieces.as_chunks_mut();
+        let (depths, _) = depths.as_chunks_mut();
+        let mut blocks = pieces.iter_mut().zip(depths);
+        for (pieces, depths) in blocks.by_ref().take(count / LANES) {
+            draw_block(id, pieces, depths, lanes(x).map(&inverse_depth));
+            x += LANES as f32;
+        }
+        if let Some((pieces, depths)) = blocks.next() {
+            let (w, limit) = (lanes(x).map(&inverse_depth), WITHIN[count % LANES]);
+            let w = std::array::from_fn(|k| if limit[k] < w[k] { limit[k] } else { w[k] });
+            draw_block(id, pieces, depths, w);
         }
     }
 }
 
-/// Where a parallelogram's row lies: |u| ≤ w, |v| ≤ w.
-pub(super) fn rectangle_interval(flat: &Flat, y: f64) -> [f64; 2] {
-    let [w, u, v] = [&flat.w, &flat.u, &flat.v].map(|form| along_row(form, y));
-    let all = [NOWHERE[1], NOWHERE[0]];
-    [u, v].into_iter().fold(all, |interval, edge| {
-        let interval = clip(interval, [w[0] - edge[0], w[1] - edge[1]]);
-        clip(interval, [w[0] + edge[0], w[1] + edge[1]])
-    })
+/// Bounds of inverse depths in a block of which the first 0 to 3 pixels count.
+const WITHIN: [[f32; LANES]; LANES] = {
+    const ALL: f32 = f32::INFINITY;
+    [
+        [0.0; LANES],
+        [ALL, 0.0, 0.0, 0.0],
+        [ALL, ALL, 0.0, 0.0],
+        [ALL, ALL, ALL, 0.0],
+    ]
+};
+
+/// x, x + 1 and so on.
+#[inline]
+fn lanes(x: f32) -> [f32; LANES] {
+    std::array::from_fn(|k| x + k as f32)
 }
 
-/// Where an ellipse's row lies: u² + v² ≤ w², w > 0.
-pub(super) fn ellipse_interval(cone: &Cone, y: f64) -> [f64; 2] {
-    cone.interval(y, cone.discriminant(y))
-}
-
-/// A row of a quadric: w = l₀ + l₁ δ + √(D₀ + D₁ δ + D₂ δ²), δ counted from
-/// `origin`, a column near the middle of the row's visible part.
-struct QuadricRow {
-    origin: usize,
-    linear: [f32; 2],
-    discriminant: [f32; 3],
-}
-
-impl QuadricRow {
-    fn inverse_depth(&self, delta: f32) -> f32 {
-        let [l0, l1] = self.linear;
-        let [d0, d1, d2] = self.discriminant;
-        let square = (d2 * delta + d1) * delta + d0;
-        l0 + l1 * delta + (if square > 0.0 { square } else { 0.0 }).sqrt()
-    }
-}
-
-/// The row of a quadric and the columns in which it is seen.
-fn quadric_row(
-    cone: &Cone,
-    j: usize,
-    within: (usize, usize),
-    lens: &Lens,
-) -> Option<(QuadricRow, (usize, usize))> {
-    let y = lens.y(j);
-    let discriminant = cone.discriminant(y);
-    let seen = lens.columns(cone.interval(y, discriminant));
-    let columns = meet(seen, within);
-    if columns.0 >= columns.1 {
-        return None;
-    }
-    // Independent of the window, so that a pixel has the same depth in each.
-    let origin = usize::midpoint(seen.0, seen.1);
-    let row = QuadricRow {
-        origin,
-        linear: lens.linear_about(&cone.linear, y, origin),
-        discriminant: lens.quadratic_about(discriminant, origin),
-    };
-    Some((row, columns))
-}
-
-/// Columns of a row in which a ball is seen.
-pub(super) fn ball_columns(ball: &Quadric, j: usize, lens: &Lens) -> (usize, usize) {
-    let y = lens.y(j);
-    lens.columns(ball.cone.interval(y, ball.cone.discriminant(y)))
-}
-
-pub(super) fn meet(a: (usize, usize), b: (usize, usize)) -> (usize, usize) {
-    (a.0.max(b.0), a.1.min(b.1))
+/// Draws a surface of inverse depths w into a block where it is nearer.
+#[inline]
+fn draw_block(id: u32, pieces: &mut [u32; LANES], depths: &mut [f32; LANES], w: [f32; LANES]) {
+    // All is read before anything is written, and selected, not branched on,
+    // so that the lanes are a vector.
+    let (ids, old) = (*pieces, *depths);
+    *depths = std::array::from_fn(|k| if w[k] > old[k] { w[k] } else { old[k] });
+    *pieces = std::array::from_fn(|k| if w[k] > old[k] { id } else { ids[k] });
 }
 
 /// The primitive and the depth seen at every pixel of a camera's image.
@@ -233,7 +174,7 @@ impl Raster {
 /// What a camera sees of a scene.
 #[must_use]
 pub fn rasterise(scene: &[Primitive], camera: &Pinhole) -> Raster {
-    let Cutter { lens, pieces, .. } = cut_scene(scene, camera);
+    let Cutter { lens, pieces, .. } = cut_scene(scene, camera, None);
     let mut buffer = Buffer::new(Window::frame(&lens));
     for (id, piece) in (0..).zip(&pieces) {
         buffer.draw(id, piece, &lens);

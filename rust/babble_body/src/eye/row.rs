@@ -1,10 +1,12 @@
-//! Surfaces along one row of pixels, in closed form.
+//! The image plane: pixels and rays.
 //!
 //! A pixel's ray is d = (X, Y, 1) in the camera frame, so a point on it at
 //! depth z is z d. Everything here is in terms of the inverse depth w = 1/z,
 //! which is linear in X on a plane and needs no division on a quadric.
 
 use nalgebra::{Matrix3, Vector3};
+
+use super::window::Window;
 
 /// The image plane: pixel index to ray and back.
 #[derive(Debug, Clone, Copy)]
@@ -55,25 +57,57 @@ impl Lens {
         )
     }
 
-    /// A linear form along a row, as coefficients of (1, δ) in the number δ of
-    /// columns to the right of column i.
-    pub(super) fn linear_about(&self, form: &Vector3<f64>, y: f64, i: usize) -> [f32; 2] {
-        let [slope, offset] = along_row(form, y);
-        [
-            (slope * self.x(i) + offset) as f32,
-            (slope * self.pitch) as f32,
-        ]
+    /// The columns with x in [low, high], counted from an origin.
+    pub(super) fn columns_from(&self, origin: &Origin, [low, high]: [f64; 2]) -> (usize, usize) {
+        let start = origin.column as f64;
+        index_range(start + low, start + high, self.width)
+    }
+}
+
+/// A pixel from which columns x and rows y are counted, to the right and down,
+/// in the forms of one piece. Near it f32 is exact enough for depths.
+///
+/// A ray is d = B (x, y, 1), so a linear form l of d is Bᵀ l in (x, y, 1), and
+/// a quadratic form Q is Bᵀ Q B.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Origin {
+    pub(super) column: usize,
+    pub(super) row: usize,
+    /// X and Y there.
+    ray: [f64; 2],
+    pitch: f64,
+}
+
+impl Origin {
+    /// The middle of a window. It must not depend on which part of the image
+    /// is drawn, so that a pixel has the same depth and colour in each.
+    pub(super) fn middle(window: &Window, lens: &Lens) -> Self {
+        let column = usize::midpoint(window.columns.0, window.columns.1);
+        let row = usize::midpoint(window.rows.0, window.rows.1);
+        Self {
+            column,
+            row,
+            ray: [lens.x(column), lens.y(row)],
+            pitch: lens.pitch,
+        }
     }
 
-    /// A quadratic in X, as coefficients of (1, δ, δ²) in the number δ of
-    /// columns to the right of column i.
-    pub(super) fn quadratic_about(&self, [a, b, c]: [f64; 3], i: usize) -> [f32; 3] {
-        let x = self.x(i);
-        [
-            ((a * x + b) * x + c) as f32,
-            ((2.0 * a * x + b) * self.pitch) as f32,
-            (a * self.pitch * self.pitch) as f32,
-        ]
+    /// Bᵀ l
+    pub(super) fn linear(&self, form: &Vector3<f64>) -> Vector3<f64> {
+        let [x, y] = self.ray;
+        Vector3::new(
+            form.x * self.pitch,
+            -form.y * self.pitch,
+            form.x * x + form.y * y + form.z,
+        )
+    }
+
+    /// Bᵀ Q B of a symmetric form.
+    pub(super) fn quadratic(&self, form: &Matrix3<f64>) -> Matrix3<f64> {
+        let columns = [0, 1, 2].map(|k| self.linear(&form.column(k).into_owned()));
+        let half = Matrix3::from_columns(&columns).transpose();
+        let columns = [0, 1, 2].map(|k| self.linear(&half.column(k).into_owned()));
+        Matrix3::from_columns(&columns)
     }
 }
 
@@ -81,97 +115,17 @@ impl Lens {
 /// range. NaN gives the whole range on its side.
 fn index_range(low: f64, high: f64, count: usize) -> (usize, usize) {
     let low = low.max(0.0).min(count as f64);
-    let first = low as usize;
-    let first = first + usize::from((first as f64) < low);
-    let end = if high < 0.0 {
-        0
-    } else {
-        high.min(count as f64 - 1.0) as usize + 1
-    };
-    (first, end)
+    // Through i32, which all processors convert to in one instruction.
+    let whole = |x: f64| x as i32;
+    let first = whole(low);
+    let first = first + i32::from(f64::from(first) < low);
+    let high = high.min(count as f64 - 1.0);
+    let end = if high < 0.0 { 0 } else { whole(high) + 1 };
+    (first as usize, end as usize)
 }
 
-/// An empty interval of X.
-pub(super) const NOWHERE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
-
-/// A linear form along a row: [slope, offset] in X.
-pub(super) fn along_row(form: &Vector3<f64>, y: f64) -> [f64; 2] {
-    [form.x, form.y * y + form.z]
-}
-
-/// A cone of rays from the camera: those with (l · d)² ≥ dᵀ Q d and l · d > 0.
-/// Spheres, cylinders and flat discs are all seen within such a cone.
-#[derive(Debug, Clone)]
-pub(super) struct Cone {
-    /// l
-    pub(super) linear: Vector3<f64>,
-    /// Q, symmetric and positive semidefinite.
-    pub(super) form: Matrix3<f64>,
-}
-
-impl Cone {
-    /// Coefficients of D(X) = (l · d)² − dᵀ Q d, highest power first.
-    pub(super) fn discriminant(&self, y: f64) -> [f64; 3] {
-        let [slope, offset] = along_row(&self.linear, y);
-        let q = &self.form;
-        [
-            slope * slope - q.m11,
-            2.0 * (slope * offset - q.m12 * y - q.m13),
-            offset * offset - (q.m22 * y + 2.0 * q.m23) * y - q.m33,
-        ]
-    }
-
-    /// The interval of X in which a row's rays are inside of the cone.
-    pub(super) fn interval(&self, y: f64, discriminant: [f64; 3]) -> [f64; 2] {
-        solve(discriminant, along_row(&self.linear, y))
-    }
-}
-
-/// Where a X² + b X + c ≥ 0 and slope X + offset > 0, provided that the
-/// linear form has no zero where the quadratic is positive.
-fn solve([a, b, c]: [f64; 3], [slope, offset]: [f64; 2]) -> [f64; 2] {
-    let half = 0.5 * b;
-    let square = half * half - a * c;
-    let row_or_nothing = |inside| {
-        if inside {
-            [f64::NEG_INFINITY, f64::INFINITY]
-        } else {
-            NOWHERE
-        }
-    };
-    if square < 0.0 {
-        return row_or_nothing(a > 0.0 && offset > 0.0);
-    }
-    // The sum without cancellation, so that a may go through zero.
-    let sum = -(half + square.sqrt().copysign(half));
-    if sum == 0.0 {
-        return row_or_nothing(a >= 0.0 && c >= 0.0 && offset > 0.0);
-    }
-    let (p, q) = (sum / a, c / sum);
-    let (low, high) = if p < q { (p, q) } else { (q, p) };
-    if a < 0.0 {
-        if slope * 0.5 * (low + high) + offset > 0.0 {
-            [low, high]
-        } else {
-            NOWHERE
-        }
-    } else if slope > 0.0 {
-        [high, f64::INFINITY]
-    } else {
-        [f64::NEG_INFINITY, low]
-    }
-}
-
-/// The part of an interval where slope X + offset ≥ 0.
-pub(super) fn clip([low, high]: [f64; 2], [slope, offset]: [f64; 2]) -> [f64; 2] {
-    let root = -offset / slope;
-    if slope > 0.0 {
-        [low.max(root), high]
-    } else if slope < 0.0 {
-        [low, high.min(root)]
-    } else if offset >= 0.0 {
-        [low, high]
-    } else {
-        NOWHERE
-    }
+/// Pixels from one to another, in one direction.
+#[inline]
+pub(super) fn offset(to: usize, from: usize) -> f32 {
+    (to.cast_signed() - from.cast_signed()) as f32
 }

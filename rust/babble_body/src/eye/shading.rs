@@ -1,14 +1,15 @@
 //! Pictures: what the rasteriser sees, lit and coloured.
 
 use image::RgbImage;
-use nalgebra::Vector3;
 
 use super::ground::Checker;
-use super::light::{Light, SHADOW, Shaded, Swatch, background, fill, pigment, swatch};
-use super::piece::{Cutter, Piece, Surface, cut_scene};
+use super::ink::Ink;
+use super::light::{Light, SHADOW, Shaded, Swatch, pigment, swatch};
+use super::piece::{Cutter, Piece, cut_scene};
 use super::raster::Buffer;
 use super::row::Lens;
 use super::shadow::{Shadow, cast};
+use super::surface::Surface;
 use super::window::Window;
 use super::{EyeError, Pinhole, Primitive, Shape};
 
@@ -46,9 +47,10 @@ fn draw(scene: &[Primitive], camera: &Pinhole, pixels: &mut [u8]) {
     if pixels.is_empty() {
         return;
     }
-    let mut painter = Painter::new(scene, camera);
+    let mut painter = Painter::new(scene, camera, None);
     let mut first = 0;
-    for band in pixels.chunks_mut(3 * camera.width * BAND) {
+    let (pixels, _) = pixels.as_chunks_mut::<3>();
+    for band in pixels.chunks_mut(camera.width * BAND) {
         painter.paint(first, band);
         first += BAND;
     }
@@ -62,15 +64,15 @@ pub fn render_smooth(scene: &[Primitive], camera: &Pinhole) -> RgbImage {
         return image;
     }
     let fine = camera.scaled(2);
-    let mut painter = Painter::new(scene, &fine);
-    let mut band = vec![0; 3 * fine.width * BAND];
+    let mut painter = Painter::new(scene, &fine, None);
+    let mut band = vec![[0; 3]; fine.width * BAND];
     let rows = camera.width * 3;
     for (k, coarse) in image.chunks_mut(rows * BAND / 2).enumerate() {
-        let fine_rows = &mut band[..4 * coarse.len()];
+        let fine_rows = &mut band[..4 * coarse.len() / 3];
         painter.paint(k * BAND, fine_rows);
         for (mean, pair) in coarse
             .chunks_exact_mut(rows)
-            .zip(fine_rows.chunks_exact(4 * rows))
+            .zip(fine_rows.as_flattened().chunks_exact(4 * rows))
         {
             halve(mean, pair);
         }
@@ -93,8 +95,8 @@ fn halve(mean: &mut [u8], pair: &[u8]) {
 /// How a piece is coloured.
 enum Paint {
     Even(Swatch),
-    Shaded(Box<Shaded>),
-    Checker(Box<Checker>),
+    Shaded(Shaded),
+    Checker(Checker),
 }
 
 /// Shadows on a piece of ground: ids of its lit and of its dark paint.
@@ -104,21 +106,21 @@ struct Shade {
     shadows: Vec<Shadow>,
 }
 
-/// Draws a picture band by band.
-struct Painter {
+/// Draws a picture, or a window of one, band by band.
+pub(super) struct Painter {
+    light: Light,
     lens: Lens,
     pieces: Vec<Piece>,
     /// Of the pieces, then of grounds in the shadow.
     paints: Vec<Paint>,
     shades: Vec<Shade>,
-    /// Vertical in the camera frame.
-    up: Vector3<f64>,
     buffer: Buffer,
 }
 
 impl Painter {
-    fn new(scene: &[Primitive], camera: &Pinhole) -> Self {
-        let cutter = cut_scene(scene, camera);
+    /// Of a window, or without one of the whole picture.
+    pub(super) fn new(scene: &[Primitive], camera: &Pinhole, view: Option<Window>) -> Self {
+        let cutter = cut_scene(scene, camera, view);
         let light = Light::new(&camera.rotation);
         let mut paints: Vec<Paint> = cutter
             .pieces
@@ -139,22 +141,22 @@ impl Painter {
         }
         let Cutter { lens, pieces, .. } = cutter;
         let window = Window {
-            columns: (0, lens.width),
-            rows: (0, BAND.min(lens.height)),
+            rows: (0, 0),
+            ..view.unwrap_or(Window::frame(&lens))
         };
         Self {
+            light,
             lens,
             pieces,
             paints,
             shades,
-            up: camera.rotation.column(2).into_owned(),
             buffer: Buffer::new(window),
         }
     }
 
     /// Paints whole rows from `first` on.
-    fn paint(&mut self, first: usize, rows: &mut [u8]) {
-        let length = 3 * self.lens.width;
+    pub(super) fn paint<I: Ink>(&mut self, first: usize, rows: &mut [I]) {
+        let length = self.buffer.window.width();
         let end = first + rows.len() / length;
         self.buffer.move_to((first, end));
         for (id, piece) in (0..).zip(&self.pieces) {
@@ -170,40 +172,39 @@ impl Painter {
         }
     }
 
-    fn paint_row(&mut self, j: usize, row: &mut [u8]) {
+    fn paint_row<I: Ink>(&mut self, j: usize, row: &mut [I]) {
+        let columns = self.buffer.window.columns;
         let y = self.lens.y(j);
-        let end = self.lens.width;
-        let sky = self.background(y);
-        let (pieces, depths) = self.buffer.span(j, (0, end));
+        let (pieces, depths) = self.buffer.span(j, columns);
         let mut first = 0;
-        while first < end {
+        while first < row.len() {
             let next = first + run_length(&pieces[first..]);
-            let pixels = &mut row[3 * first..3 * next];
+            let pixels = &mut row[first..next];
+            let column = columns.0 + first;
             match self.paints.get(pieces[first] as usize) {
-                None => fill(pixels, &sky),
-                Some(Paint::Even(swatch)) => fill(pixels, swatch),
-                Some(Paint::Checker(checker)) => checker.paint(pixels, first, next, y, &self.lens),
+                None => I::fill(pixels, &self.light.sky(y)),
+                Some(Paint::Even(swatch)) => I::fill(pixels, swatch),
+                Some(Paint::Checker(checker)) => {
+                    checker.paint(pixels, column, columns.0 + next, y, &self.lens);
+                }
                 Some(Paint::Shaded(shaded)) => {
-                    shade(pixels, shaded, &depths[first..next], first, y, &self.lens);
+                    shaded.paint(pixels, &depths[first..next], (column, j));
                 }
             }
             first = next;
         }
-    }
-
-    /// The background of a row: that in the direction of its middle.
-    fn background(&self, y: f64) -> Swatch {
-        let sine = (self.up.y * y + self.up.z) / (y * y + 1.0).sqrt();
-        swatch(background(sine), 1.0)
     }
 }
 
 fn paint(piece: &Piece, primitive: &Primitive, light: &Light, brightness: f32) -> Paint {
     let colour = pigment(primitive.material);
     match (&piece.surface, &primitive.shape) {
-        (Surface::Ball(quadric) | Surface::Side(quadric, _), _) => {
-            Paint::Shaded(Box::new(Shaded::new(quadric, primitive.material, light)))
-        }
+        (Surface::Ball(quadric, _) | Surface::Side(quadric, _), _) => Paint::Shaded(Shaded::new(
+            quadric,
+            primitive.material,
+            light,
+            piece.origin,
+        )),
         (
             Surface::Rectangle(flat),
             Shape::Ground {
@@ -215,9 +216,9 @@ fn paint(piece: &Piece, primitive: &Primitive, light: &Light, brightness: f32) -
         ) => {
             let brightness = brightness * light.on_flat(&flat.normal);
             let checker = Checker::new(flat, *centre, *half_extents, *cell, colour, brightness);
-            Paint::Checker(Box::new(checker))
+            Paint::Checker(checker)
         }
-        (Surface::Rectangle(flat) | Surface::Ellipse(flat, _), _) => {
+        (Surface::Rectangle(flat) | Surface::Ellipse(flat), _) => {
             Paint::Even(swatch(colour, light.on_flat(&flat.normal)))
         }
     }
@@ -227,29 +228,7 @@ fn paint(piece: &Piece, primitive: &Primitive, light: &Light, brightness: f32) -
 fn run_length(pieces: &[u32]) -> usize {
     let id = pieces[0];
     let same = |block: &&[u32]| block.iter().fold(0, |all, piece| all | (piece ^ id)) == 0;
-    let whole = 8 * pieces.chunks_exact(8).take_while(same).count();
+    let whole = 4 * pieces.chunks_exact(4).take_while(same).count();
     let rest = pieces[whole..].iter().take_while(|piece| **piece == id);
     whole + rest.count()
-}
-
-/// Shades a run of pixels of a ball or of a cylinder's side.
-fn shade(pixels: &mut [u8], shaded: &Shaded, depths: &[f32], first: usize, y: f64, lens: &Lens) {
-    const BLOCK: usize = 32;
-    let cosines = shaded.cosines.each_ref().map(|cosine| {
-        let [start, step] = lens.linear_about(&cosine.along, y, first);
-        move |delta: f32, depth: f32| (start + step * delta) * depth - cosine.offset
-    });
-    let mut light = [[0.0; 2]; BLOCK];
-    let mut columns = 0_i32..;
-    for (pixels, depths) in pixels.chunks_mut(3 * BLOCK).zip(depths.chunks(BLOCK)) {
-        for ((light, w), delta) in light.iter_mut().zip(depths).zip(&mut columns) {
-            let depth = 1.0 / w;
-            *light = shaded.at(cosines.each_ref().map(|cosine| cosine(delta as f32, depth)));
-        }
-        for (pixel, [brightness, gloss]) in pixels.chunks_exact_mut(3).zip(light) {
-            for (level, colour) in pixel.iter_mut().zip(shaded.colour) {
-                *level = (colour * brightness + gloss) as u8;
-            }
-        }
-    }
 }

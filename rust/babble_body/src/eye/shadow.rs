@@ -4,18 +4,19 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::light::TOWARDS_KEY;
-use super::piece::{Cutter, Flat, perpendicular};
-use super::raster::{Buffer, ellipse_interval, meet, rectangle_interval};
-use super::row::{Cone, Lens};
-use super::window::Window;
+use super::outline::Outline;
+use super::piece::{Cutter, perpendicular};
+use super::raster::Buffer;
+use super::row::{Lens, Origin};
+use super::surface::Flat;
+use super::window::{Window, meet};
 use super::{Pinhole, Primitive, Shape};
 
 /// A patch of shadow on the ground.
 pub(super) struct Shadow {
     window: Window,
-    flat: Flat,
-    /// For an ellipse.
-    cone: Option<Cone>,
+    origin: Origin,
+    outline: Outline,
 }
 
 impl Shadow {
@@ -26,12 +27,10 @@ impl Shadow {
             return;
         }
         for j in part.rows.0..part.rows.1 {
-            let y = lens.y(j);
-            let interval = match &self.cone {
-                Some(cone) => ellipse_interval(cone, y),
-                None => rectangle_interval(&self.flat, y),
-            };
-            let columns = meet(lens.columns(interval), part.columns);
+            let y = j as f64 - self.origin.row as f64;
+            let mut interval = [[0.0; 2]];
+            self.outline.intervals(y, &mut interval);
+            let columns = meet(lens.columns_from(&self.origin, interval[0]), part.columns);
             if columns.0 < columns.1 {
                 for piece in buffer.span(j, columns).0 {
                     *piece = if *piece == lit { dark } else { *piece };
@@ -141,10 +140,22 @@ impl<'a> Caster<'a> {
         let half = half.map(|axis| to_camera * (self.along_light * axis));
         let centre = self.camera.camera_from_world(&foot);
         let up = to_camera.column(2).into_owned();
+        let window = self.cutter.flat_window(&centre, half);
+        if !self.cutter.sees(&window) {
+            return;
+        }
         if let Some(flat) = Flat::new(centre, half, up) {
-            let window = self.cutter.flat_window(&centre, half);
-            let cone = round.then(|| flat.cone());
-            self.shadows.push(Shadow { window, flat, cone });
+            let origin = Origin::middle(&window, &self.cutter.lens);
+            let outline = if round {
+                flat.ellipse(&origin)
+            } else {
+                flat.parallelogram(&origin)
+            };
+            self.shadows.push(Shadow {
+                window,
+                origin,
+                outline,
+            });
         }
     }
 }

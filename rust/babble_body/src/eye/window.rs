@@ -20,7 +20,6 @@ impl Window {
     }
 
     pub(super) fn overlap(&self, other: &Self) -> Self {
-        let meet = |a: (usize, usize), b: (usize, usize)| (a.0.max(b.0), a.1.min(b.1));
         Self {
             columns: meet(self.columns, other.columns),
             rows: meet(self.rows, other.rows),
@@ -45,6 +44,42 @@ impl Window {
 
     pub(super) fn height(&self) -> usize {
         self.rows.1.saturating_sub(self.rows.0)
+    }
+}
+
+pub(super) fn meet(a: (usize, usize), b: (usize, usize)) -> (usize, usize) {
+    (a.0.max(b.0), a.1.min(b.1))
+}
+
+/// The four planes from the camera along the edges of a window.
+#[derive(Debug, Clone)]
+pub(super) struct Frustum {
+    /// Unit normals, away from the window.
+    outward: [Vector3<f64>; 4],
+}
+
+impl Frustum {
+    pub(super) fn new(lens: &Lens, window: &Window) -> Self {
+        // Half a pixel beyond the centres of the outermost pixels.
+        let pitch = 1.0 / lens.focal_px;
+        let [left, right] =
+            [window.columns.0, window.columns.1].map(|column| lens.x(column) - 0.5 * pitch);
+        let [top, bottom] = [window.rows.0, window.rows.1].map(|row| lens.y(row) + 0.5 * pitch);
+        Self {
+            outward: [
+                Vector3::new(-1.0, 0.0, left).normalize(),
+                Vector3::new(1.0, 0.0, -right).normalize(),
+                Vector3::new(0.0, 1.0, -top).normalize(),
+                Vector3::new(0.0, -1.0, bottom).normalize(),
+            ],
+        }
+    }
+
+    /// Whether all within `radius` of the hull of points is beyond one plane.
+    pub(super) fn misses(&self, points: &[Vector3<f64>], radius: f64) -> bool {
+        self.outward
+            .iter()
+            .any(|normal| points.iter().all(|point| normal.dot(point) > radius))
     }
 }
 

@@ -89,6 +89,49 @@ pub fn example() -> Vec<Primitive> {
     )
 }
 
+/// A grasp of 20 primitives: a ball of 6 cm a
+/// side 26 cm from the eye at (0, 0.10, 0.25) m, above a table, and a hand of
+/// one box and 14 capsules on its forearm. `across` moves the hand over the
+/// ball: at 0 m it is in the way of the eye, at 0.06 m beside the ball.
+pub fn grasping(across: f64) -> Vec<Primitive> {
+    let way = Vector3::new(0.25, 0.35, -0.9).normalize();
+    let target = Vector3::new(0.0, 0.10, 0.25) + way * 0.26;
+    let table = Shape::Cuboid {
+        centre: target - Vector3::z() * 0.05,
+        rotation: Matrix3::identity(),
+        half_extents: Vector3::new(0.5, 0.5, 0.02),
+    };
+    let mut scene = vec![
+        Primitive::new(table, GROUND),
+        Primitive::target(target, 0.03),
+    ];
+    let at = |x: f64, y: f64, z: f64| target - way * 0.05 + Vector3::new(x + across, y, z);
+    let palm = Shape::Cuboid {
+        centre: at(0.0, -0.05, 0.0),
+        rotation: turned(0.2, -0.1),
+        half_extents: Vector3::new(0.035, 0.03, 0.01),
+    };
+    scene.push(Primitive::new(palm, HAND));
+    let mut bone = |a: V, b: V, radius| scene.push(capsule(a, b, radius, HAND));
+    for k in 0..4 {
+        let x = 0.018 * (f64::from(k) - 1.5);
+        bone(at(x, -0.02, 0.0), at(x, 0.01, 0.006), 0.008);
+        bone(at(x, 0.01, 0.006), at(x, 0.03, -0.006), 0.0075);
+        bone(at(x, 0.03, -0.006), at(x, 0.035, -0.024), 0.007);
+    }
+    bone(at(-0.03, -0.06, 0.0), at(-0.045, -0.03, -0.01), 0.009);
+    bone(at(-0.045, -0.03, -0.01), at(-0.04, 0.0, -0.02), 0.008);
+    bone(at(0.0, -0.08, 0.0), at(-0.05, -0.30, 0.02), 0.02);
+    bone(at(-0.05, -0.30, 0.02), at(-0.15, -0.40, 0.1), 0.025);
+    bone(at(-0.15, -0.40, 0.1), at(-0.15, -0.45, -0.1), 0.03);
+    scene
+}
+
+/// Where the ball of [`grasping`] is.
+pub fn grasped() -> V {
+    Vector3::new(0.0, 0.10, 0.25) + Vector3::new(0.25, 0.35, -0.9).normalize() * 0.26
+}
+
 /// Trail of the fingertip as thin capsules.
 pub fn trail() -> impl Iterator<Item = Primitive> {
     let point = |k: i32| {

@@ -6,8 +6,8 @@ mod eye_scene;
 use std::hint::black_box;
 
 use babble_body::eye::{
-    Eye, EyeConfig, Primitive, rasterise, red_centroid, render_rgb_into, render_smooth,
-    third_person,
+    Eye, EyeConfig, Primitive, SHAPE_LEN, foveal_shape, rasterise, red_centroid, render_rgb_into,
+    render_smooth, third_person,
 };
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::Vector3;
@@ -74,6 +74,18 @@ fn centroid(c: &mut Criterion) {
     }
 }
 
+fn fovea(c: &mut Criterion) {
+    let eye = Eye::new(EyeConfig::helmholtz()).unwrap();
+    let camera = eye.camera(eye.fixate(&eye_scene::grasped()));
+    let mut shape = [0.0; SHAPE_LEN];
+    for (name, across) in [("beside", 0.06), ("over", 0.0)] {
+        let scene = eye_scene::grasping(across);
+        c.bench_function(&format!("foveal shape, hand {name}"), |b| {
+            b.iter(|| foveal_shape(black_box(&scene), &camera, &mut shape));
+        });
+    }
+}
+
 fn reflex(c: &mut Criterion) {
     for (name, config) in [
         ("helmholtz", EyeConfig::helmholtz()),
@@ -91,5 +103,5 @@ fn reflex(c: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, pictures, centroid, reflex);
+criterion_group!(benches, pictures, centroid, fovea, reflex);
 criterion_main!(benches);

@@ -1,4 +1,4 @@
-//! What pixels are painted with.
+//! What pixels are painted with: colours or their luminance.
 
 use super::light::{Swatch, fill};
 
@@ -34,4 +34,38 @@ impl Ink for [u8; 3] {
 fn level_bits(x: f32) -> u32 {
     let x = if x < 255.0 { x } else { 255.0 };
     (x + 256.0).to_bits()
+}
+
+/// Weights of (red, green, blue) in the luminance of ITU-R BT.709, times 10⁴.
+/// Levels are whole numbers to 255, so sums of a few luminances are whole
+/// numbers below 2²⁴: exact in f32, in any order.
+const BT_709: [f32; 3] = [2126.0, 7152.0, 722.0];
+
+/// The luminance of white.
+pub(super) const WHITE: f32 = 255.0 * 1e4;
+
+/// Luminance of a colour, 0 to [`WHITE`].
+#[inline]
+fn luminance([red, green, blue]: [f32; 3]) -> f32 {
+    let [r, g, b] = BT_709;
+    r * red + g * green + b * blue
+}
+
+/// Luminance of the colour that is painted with `[u8; 3]`.
+impl Ink for f32 {
+    fn fill(pixels: &mut [Self], swatch: &Swatch) {
+        pixels.fill(luminance([swatch[0], swatch[1], swatch[2]].map(f32::from)));
+    }
+
+    #[inline]
+    fn blend(colour: [f32; 3], brightness: [f32; LANES], highlight: [f32; LANES]) -> [Self; LANES] {
+        let levels = colour.map(|level| {
+            std::array::from_fn::<_, LANES, _>(|k| {
+                let bits = level_bits(level * brightness[k] + highlight[k]);
+                f32::from_bits(bits & !0x7fff)
+            })
+        });
+        let offset = luminance([256.0; 3]);
+        std::array::from_fn(|k| luminance(levels.map(|level| level[k])) - offset)
+    }
 }

@@ -32,7 +32,10 @@ pub use camera::Pinhole;
 pub use centroid::red_centroid;
 pub use config::{EyeConfig, GazeFrame};
 pub use error::EyeError;
-pub use fovea::FOVEA_BLOCKS;
+pub use fovea::{
+    FOVEA_BLOCK, FOVEA_BLOCKS, FOVEA_PIXELS, SHAPE_LEN, foveal_edges, foveal_picture, foveal_shape,
+    shape_picture,
+};
 pub use gaze::{Eye, Gaze};
 pub use light::{TOWARDS_KEY, is_red};
 pub use raster::{Raster, rasterise};

@@ -142,8 +142,7 @@ impl Episode for Grasp {
             asked: None,
         };
         let scene = sight::scene(task, &episode.state.world, &episode.state.case);
-        task.eye
-            .fovea(&scene, episode.state.gaze, &mut episode.fovea);
+        sight::look(task, &scene, episode.state.gaze, &mut episode.fovea);
         episode
     }
 
@@ -182,7 +181,7 @@ impl Episode for Grasp {
         self.state = fresh(task, case, request, stream);
         let scene = sight::scene(task, &self.state.world, &case);
         self.state.gaze = sight::foveate(task, &scene);
-        task.eye.fovea(&scene, self.state.gaze, &mut self.fovea);
+        sight::look(task, &scene, self.state.gaze, &mut self.fovea);
         self.state.record(task);
     }
 
@@ -197,7 +196,7 @@ impl Episode for Grasp {
             self.state.advance(task, action);
             let scene = sight::scene(task, &self.state.world, &self.state.case);
             self.state.gaze = sight::follow(task, &scene, self.state.gaze);
-            task.eye.fovea(&scene, self.state.gaze, &mut self.fovea);
+            sight::look(task, &scene, self.state.gaze, &mut self.fovea);
         }
         self.state.record(task);
         Ok(self.state.judge(task, before))

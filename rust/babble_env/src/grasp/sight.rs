@@ -1,6 +1,6 @@
 //! What the eye sees of a grasping episode: Eq. 1 on the image, and the fovea's edges.
 
-use babble_body::eye::{FOVEA_BLOCKS, Gaze, Material, Primitive, Shape};
+use babble_body::eye::{Gaze, Material, Primitive, SHAPE_LEN, Shape, foveal_shape};
 use babble_body::pose;
 use babble_body::robot::World;
 use nalgebra::{Matrix3, Vector3};
@@ -9,7 +9,7 @@ use super::case::GraspCase;
 use super::task::GraspTask;
 
 /// Neurons of the map of the fovea, 21 × 21.
-pub const FOVEA_NEURONS: usize = FOVEA_BLOCKS * FOVEA_BLOCKS;
+pub const FOVEA_NEURONS: usize = SHAPE_LEN;
 
 /// Colour of what the object lies on.
 const TABLE: Material = Material::plain([196, 196, 188]);
@@ -58,11 +58,21 @@ pub fn see(
 ) -> Option<Gaze> {
     let scene = scene(task, world, case);
     let gaze = task.eye.foveate(&scene, task.eye.rest()).ok()?;
-    task.eye.fovea(&scene, gaze, fovea);
+    look(task, &scene, gaze, fovea);
     Some(gaze)
 }
 
 /// One step of the reflex, Eq. 1. Where no red is seen the eye stays as it is.
 pub(super) fn follow(task: &GraspTask, scene: &[Primitive], gaze: Gaze) -> Gaze {
     task.eye.reflex_step(scene, gaze).unwrap_or(gaze)
+}
+
+/// Edges in the fovea, where the eye looks.
+pub(super) fn look(
+    task: &GraspTask,
+    scene: &[Primitive],
+    gaze: Gaze,
+    fovea: &mut [f32; FOVEA_NEURONS],
+) {
+    foveal_shape(scene, &task.eye.camera(gaze), fovea);
 }

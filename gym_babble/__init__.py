@@ -12,7 +12,14 @@ rules for modeling the development of reaching with obstacles and grasping (2008
 import warnings
 
 from gym_babble._core import __version__, debug_build
-from gym_babble.agents import HebbBabbling, Oracle, RandomBabbling, Scripted
+from gym_babble.agents import (
+    GraspScripted,
+    HebbBabbling,
+    HebbGrasping,
+    Oracle,
+    RandomBabbling,
+    Scripted,
+)
 from gym_babble.config import Config
 from gym_babble.evaluation import Evaluation, evaluate
 from gym_babble.registration import register_all
@@ -21,7 +28,9 @@ from gym_babble.scenarios import Scenario, scenarios
 __all__ = [
     "Config",
     "Evaluation",
+    "GraspScripted",
     "HebbBabbling",
+    "HebbGrasping",
     "Oracle",
     "RandomBabbling",
     "Scenario",

@@ -147,7 +147,7 @@ class Grip:
     twelve joints that share its equilibrium point, so that the fingers envelop an object one by
     one, at about three times the cost."""
     thumb_base_m: tuple[float, float] = (0.0, 0.006)
-    """Where the thumb sits: along the forearm from the wrist, and towards the palm's side [m] [C]."""
+    """Where the thumb sits: along the forearm from the wrist, towards the palm's side [m] [C]."""
     thumb_direction_deg: float = 154.7
     """Direction of the open thumb, counter-clockwise from the forearm [deg]: 2.7 rad [C]. Its four
     joints flex clockwise, against the fingers."""
@@ -261,7 +261,7 @@ class GraspNumbers:
     """The grasping task."""
 
     diameters_m: tuple[float, ...] = (0.024, 0.06)
-    """Diameters of the objects [m] [F]. The 12 and 30 cm that the paper prints cannot be enclosed."""
+    """Diameters of the objects [m] [F]. The printed 12 and 30 cm cannot be enclosed."""
     any_diameter_between: bool = False
     """Whether a diameter is drawn from all between the smallest and the largest, and not from the
     list [C]."""

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from contextlib import AbstractContextManager
 
-    from gym_babble.agents.movements import Agent
+    from gym_babble.agents.base import Agent
     from gym_babble.config import BodyLike
 
 __all__ = ["CONTENDERS", "Contender", "CurvePoint", "Settings", "Trained"]

@@ -17,7 +17,7 @@ from gym_babble.scenarios import Scenario, scenarios
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from gym_babble.agents.movements import Agent
+    from gym_babble.agents.base import Agent
     from gym_babble.config import BodyLike
 
 __all__ = ["Evaluation", "evaluate", "wilson"]

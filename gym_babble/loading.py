@@ -17,7 +17,7 @@ from gym_babble.errors import AgentFileError, ConfigError, MissingExtraError
 from gym_babble.registration import ENVIRONMENTS
 
 if TYPE_CHECKING:
-    from gym_babble.agents.movements import Agent
+    from gym_babble.agents.base import Agent
     from gym_babble.config import BodyLike
 
 __all__ = ["REFERENCES", "LoadedAgent", "check_env_id", "load_agent"]

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from gym_babble.agents.movements import Agent
+    from gym_babble.agents.base import Agent
     from gym_babble.config import BodyLike
 
 __all__ = [

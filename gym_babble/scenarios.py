@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
-from typing import TypedDict
+from typing import TYPE_CHECKING, Any, TypedDict
 
 from gym_babble import _core
 from gym_babble.config import BodyLike, config_json
 from gym_babble.errors import ConfigError
 
-__all__ = ["PROTOCOLS", "SPLITS", "Scenario", "scenarios"]
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
-PROTOCOLS = ("table1", "fig4")
+__all__ = ["PROTOCOLS", "SPLITS", "GraspScenario", "Scenario", "scenarios"]
+
+PROTOCOLS = {
+    "table1": "reach",
+    "fig4": "reach",
+    "table2": "grasp",
+    "fig7": "grasp",
+    "palm_side": "grasp",
+    "full": "grasp",
+}
+"""The protocols, and the task that each tests."""
 SPLITS = ("learning", "validation", "test")
 
 
@@ -26,6 +37,25 @@ class Scenario(TypedDict):
     """(x, y, radius), or None."""
 
 
+class GraspScenario(TypedDict, total=False):
+    """One case of grasping."""
+
+    protocol: str
+    index: int
+    """Place in the protocol: in "table2", 144 k + 12 i + j is start j and position i of the k-th
+    diameter."""
+    start: tuple[float, float]
+    """Shoulder and elbow [rad]."""
+    object: tuple[float, float]
+    """Centre of the object in the plane of motion [m]."""
+    diameter: float
+    """Diameter of the object [m]."""
+    goal: tuple[float, float]
+    """With `obs="goal"`: where the object is to be carried [m]."""
+    obstacle: tuple[float, float, float] | None
+    """(x, y, radius) [m], or None."""
+
+
 def scenarios(
     protocol: str,
     n: int | None = None,
@@ -34,18 +64,23 @@ def scenarios(
     split: str = "test",
     body: BodyLike = "paper",
     threads: int = 1,
-) -> list[Scenario]:
+) -> list[Any]:
     """The cases of a protocol, for `reset(options={"scenario": case})`.
 
     Args:
         protocol: "table1": `n` legal movements (1,000 if not given), drawn by the full simulation
             as the paper drew its tests; "fig4": 36 starts around each of 4 targets, where there
-            is a case.
+            is a case; "table2": 12 positions of the object times 12 starts for each diameter, where
+            the arm does not begin in the object; "fig7": 12 times 11; "palm_side" and "full": `n`
+            random cases of a region (1,000 if not given).
         n: How many; the first ones of a protocol that has a fixed list.
         seed: Seed of the draw.
         split: "test", or "validation" for choosing settings: disjoint for every seed.
         body: Body and task, as for the environments.
         threads: Threads that draw; the cases do not depend on them.
+
+    Returns:
+        `Scenario`s of reaching or `GraspScenario`s.
 
     Raises:
         ConfigError: A name, number or config is not one there is.
@@ -56,20 +91,22 @@ def scenarios(
     if n is not None and n < 1:
         raise ConfigError(f"n = {n} is not at least 1")
     check_seed(seed)
-    task = _core.ReachTask(config_json(body))
-    if protocol == "table1":
-        cases = dict(enumerate(task.table1(1000 if n is None else n, seed, split, threads)))
+    if split not in SPLITS:
+        raise ConfigError(f"split = {split!r} is not one of {', '.join(SPLITS)}")
+    many = 1000 if n is None else n
+    cases: Iterable[Any]
+    if PROTOCOLS[protocol] == "grasp":
+        region = protocol if protocol == "palm_side" else "full"
+        task = _core.GraspTask(config_json(body), region=region)
+        cases = task.cases(protocol, many, seed, split)
+    elif protocol == "table1":
+        cases = _core.ReachTask(config_json(body)).table1(many, seed, split, threads)
     else:
-        cases = {i: case for i, case in enumerate(task.fig4()) if case is not None}
+        cases = _core.ReachTask(config_json(body)).fig4()
     numbered = [
-        Scenario(
-            protocol=protocol,
-            index=i,
-            start=case["start"],
-            target=case["target"],
-            obstacle=case["obstacle"],
-        )
-        for i, case in cases.items()
+        {"protocol": protocol, "index": i, **case}
+        for i, case in enumerate(cases)
+        if case is not None
     ]
     return numbered[:n]
 

@@ -1,7 +1,16 @@
 """Agents: anything with stable-baselines3's `predict`."""
 
+from gym_babble.agents.base import Agent
+from gym_babble.agents.grasping import GraspScripted, HebbGrasping
 from gym_babble.agents.hebb import HebbBabbling
-from gym_babble.agents.movements import Agent
 from gym_babble.agents.reference import Oracle, RandomBabbling, Scripted
 
-__all__ = ["Agent", "HebbBabbling", "Oracle", "RandomBabbling", "Scripted"]
+__all__ = [
+    "Agent",
+    "GraspScripted",
+    "HebbBabbling",
+    "HebbGrasping",
+    "Oracle",
+    "RandomBabbling",
+    "Scripted",
+]

@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 import json
-import os
-from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gym_babble import _core
-from gym_babble.agents.movements import EnvLike, MovementAgent
+from gym_babble.agents.base import merge, processors
+from gym_babble.agents.movements import MovementAgent
 from gym_babble.envs import BabbleReachEnv
 from gym_babble.errors import AgentFileError, ConfigError
 from gym_babble.progress import track
 from gym_babble.scenarios import check_seed
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
     from numpy.typing import NDArray
+
+    from gym_babble.agents.base import EnvLike
 
 __all__ = ["VARIANTS", "HebbBabbling"]
 
@@ -62,8 +65,8 @@ class HebbBabbling(MovementAgent):
         super().__init__(env)
         check_seed(seed)
         numbers = json.loads(_core.Hebb.variant_config(variant))
-        _merge(numbers, config or {}, "config")
-        self._hebb = _core.Hebb(json.dumps(numbers), seed, quasi_static, _threads(threads))
+        merge(numbers, config or {}, "config")
+        self._hebb = _core.Hebb(json.dumps(numbers), seed, quasi_static, processors(threads))
 
     def learn(
         self,
@@ -121,7 +124,7 @@ class HebbBabbling(MovementAgent):
             AgentFileError: The file is cut short, altered, or not an agent.
         """
         try:
-            core, config = _core.Hebb.load(Path(path).read_bytes(), _threads(threads))
+            core, config = _core.Hebb.load(Path(path).read_bytes(), processors(threads))
         except ValueError as error:
             raise AgentFileError(f"{path}: {error}") from error
         agent = cls.__new__(cls)
@@ -170,19 +173,5 @@ class HebbBabbling(MovementAgent):
         return self.legal_movements / self.movements if self.movements else float("nan")
 
 
-def _threads(threads: int | None) -> int:
-    return threads if threads is not None else (os.cpu_count() or 1)
-
-
 def _pattern_env(config: str) -> Any:
     return BabbleReachEnv(control="pattern", reward="sparse", body=json.loads(config))
-
-
-def _merge(numbers: dict[str, Any], changes: Mapping[str, Any], path: str) -> None:
-    for name, value in changes.items():
-        if name not in numbers:
-            raise ConfigError(f"{path}.{name}: unknown field; there are {', '.join(numbers)}")
-        if isinstance(value, Mapping) and isinstance(numbers[name], dict):
-            _merge(numbers[name], value, f"{path}.{name}")
-        else:
-            numbers[name] = value

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-import gymnasium
 import numpy as np
-from gymnasium.vector import VectorEnv
 
+from gym_babble.agents.base import EnvLike, choices_of, flat_senses
 from gym_babble.envs.reach import ReachChoices
 from gym_babble.errors import ConfigError
 from gym_babble.spaces import Spec
@@ -16,24 +15,7 @@ from gym_babble.spaces import Spec
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Agent", "MovementAgent", "Playing", "choices_of"]
-
-EnvLike = Any
-"""An id, or an environment: Gymnasium's, vector, or stable-baselines3's VecEnv."""
-
-
-class Agent(Protocol):
-    """What evaluation, comparison and videos need of an agent."""
-
-    def predict(
-        self,
-        observation: Any,
-        state: Any = None,
-        episode_start: Any = None,
-        deterministic: bool = False,  # noqa: FBT001, FBT002 - stable-baselines3's signature
-    ) -> tuple[Any, Any]:
-        """Actions for observations, and the state for the next call."""
-        ...
+__all__ = ["MovementAgent", "Playing"]
 
 
 class Playing(NamedTuple):
@@ -45,25 +27,6 @@ class Playing(NamedTuple):
     """Steps made of each (n,)."""
 
 
-def choices_of(env: EnvLike) -> ReachChoices:
-    """What a reaching environment was made with.
-
-    Raises:
-        ConfigError: It is not a reaching environment of this package.
-    """
-    if isinstance(env, str):
-        env = gymnasium.make(env)
-    if isinstance(env, gymnasium.Env | VectorEnv):
-        found = getattr(env.unwrapped, "choices", None)
-    elif hasattr(env, "get_attr"):
-        found = env.get_attr("choices")[0]
-    else:
-        found = getattr(env, "choices", None)
-    if not isinstance(found, ReachChoices):
-        raise ConfigError(f"{env!r} is not a Babble environment for reaching")
-    return found
-
-
 class MovementAgent(ABC):
     """An agent that decides once per movement.
 
@@ -73,7 +36,7 @@ class MovementAgent(ABC):
     """
 
     def __init__(self, env: EnvLike) -> None:
-        self._choices = choices_of(env)
+        self._choices = choices_of(env, ReachChoices)
         self._spec = Spec.of(self._choices.task)
         self._columns = dict(self._spec.slices)
         if self._choices.control == "torque":
@@ -110,7 +73,7 @@ class MovementAgent(ABC):
             Actions (2,) or (n, 2), and the state for the next call.
         """
         del deterministic
-        senses = self._senses(observation)
+        senses = flat_senses(observation, self._columns)
         batch = np.atleast_2d(senses)
         if self._choices.control == "pattern":
             actions: NDArray[np.float32] = (2.0 * self.decide(batch) - 1.0).astype(np.float32)
@@ -119,14 +82,6 @@ class MovementAgent(ABC):
             playing = self._begin(batch, state, episode_start)
             actions, playing = self._play(batch, playing)
         return (actions if senses.ndim == 2 else actions[0]), playing
-
-    def _senses(self, observation: Any) -> NDArray[np.float32]:
-        """Flat senses (…, 11) from any form of observation."""
-        if not isinstance(observation, dict):
-            return np.asarray(observation, np.float32)
-        if "observation" in observation:
-            return np.asarray(observation["observation"], np.float32)
-        return np.concatenate([observation[name] for name in self._columns], axis=-1)
 
     def _begin(
         self, senses: NDArray[np.float32], state: Playing | None, episode_start: Any

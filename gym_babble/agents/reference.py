@@ -6,10 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gym_babble.agents.movements import EnvLike, MovementAgent
+from gym_babble.agents.movements import MovementAgent
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from gym_babble.agents.base import EnvLike
 
 __all__ = ["Oracle", "RandomBabbling", "Scripted"]
 

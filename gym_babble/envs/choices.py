@@ -30,6 +30,8 @@ class Choices(ABC):
     Each task has a class of its own, which takes the task's arguments too.
     """
 
+    task_name: ClassVar[str]
+    """What messages call the task."""
     case_options: ClassVar[tuple[str, ...]]
     """What `reset(options=...)` may give of a case."""
     envs_per_thread: ClassVar[int]

@@ -46,6 +46,7 @@ def grasp_config(
 class GraspChoices(Choices):
     """The keyword arguments of a grasping environment, checked, and what follows from them."""
 
+    task_name = "grasping"
     case_options = ("start", "object", "diameter", "goal", "obstacle")
     envs_per_thread = 4
     task: _core.GraspTask
@@ -81,7 +82,7 @@ class GraspChoices(Choices):
         self.control, self.region = control, region
 
     def part_of_case(self, name: str, value: Any) -> Any:
-        """Two numbers, a diameter, or the obstacle (x, y, radius); of (x, y) it has the config's."""
+        """Two numbers, a diameter, or the obstacle (x, y, radius), from (x, y) with the config's."""
         if name == "diameter":
             if value is None:
                 return None
@@ -97,7 +98,7 @@ class GraspChoices(Choices):
 
     @property
     def ranges(self) -> NDArray[np.float64]:
-        """Lowest and highest equilibrium points of shoulder, elbow, thumb and finger (4, 2) [rad]."""
+        """Lowest and highest equilibrium points of the four joint groups (4, 2) [rad]."""
         return np.array(self.task.ranges)
 
     @property
@@ -162,8 +163,9 @@ class BabbleGraspEnv(BabbleEnv):
     ## Rewards
 
     - `progress` (terms progress + enclosure + success + failure): decrease of the distance between
-      the object and the hollow of the hand over 10 cm, increase of the share of the last second in
-      which the hand enclosed the object, +1 for success, −1 for a lost object or a collision.
+      the object and the hollow of the hand over 10 cm; increase of the share of the last second
+      with a finger's contact plus that with the thumb's or the palm's, halved; +1 for success; −1
+      for a lost object or a collision.
     - `sparse`: 1 for success, else 0.
     - with `obs="goal"`: 0 with the object's centre within 2 cm of the goal, else −1;
       `compute_reward` gives the same.
@@ -184,13 +186,13 @@ class BabbleGraspEnv(BabbleEnv):
     - `collision` (terminated): arm or hand touches the obstacle, if one was asked for.
     - `timeout`: truncated after 240 steps (12 s), 500 in region `full`.
 
-    With `obs="goal"` nothing terminates: after `lost` or `collision` everything stays as it is until
-    the time limit, and the outcome is `success` if the object is at the goal then.
+    With `obs="goal"` nothing terminates: after `lost` or `collision` everything stays as it is
+    until the time limit, else the outcome is `success` if the object is at the goal then.
 
     ## Info
 
-    `is_success` (now), `ever_success` (in this episode), `reach` (any part of arm or hand has touched
-    the object), `palm_reach` (the palm has), `held` (the hand has held it without support),
+    `is_success` (now), `ever_success` (in this episode), `reach` (any part of arm or hand has
+    touched the object), `palm_reach` (the palm has), `held` (the hand has held it without support),
     `outcome` (running, success, collision, timeout, lost), `reward_terms`.
 
     ## Arguments

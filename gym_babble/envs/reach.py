@@ -23,6 +23,7 @@ __all__ = ["BabbleReachEnv", "BabbleReachVectorEnv", "ReachChoices"]
 class ReachChoices(Choices):
     """The keyword arguments of a reaching environment, checked, and what follows from them."""
 
+    task_name = "reaching"
     case_options = ("start", "target", "obstacle")
     envs_per_thread = 64
     task: _core.ReachTask

@@ -115,6 +115,13 @@ impl GraspTask {
         self.task.grasp_posture(object, radius)
     }
 
+    /// Point (x, y) \[m\] of the arm's plane that an eye posture (pan and tilt over their ranges) looks
+    /// at; None if it does not look down.
+    fn looked_at(&self, eye: [f64; 2]) -> Option<[f64; 2]> {
+        let gaze = self.task.eye.from_normalised(eye);
+        self.task.eye.target_in_plane(gaze, 0.0)
+    }
+
     /// How many of `n` objects of a diameter \[m\] the reflex holds through 10 s of arm motion without
     /// support; how deep it was pressed in at most \[m\]; mean flexions of thumb and finger \[rad\].
     fn hold(

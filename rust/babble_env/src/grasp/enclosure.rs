@@ -20,47 +20,61 @@ pub enum Grip {
     Failed,
 }
 
-/// Counts physics steps with an enclosing contact.
+/// In how many physics steps of a control step what touched the object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Contacts {
+    /// Fingers and thumb, or fingers and palm: the hand encloses it.
+    pub enclosing: u8,
+    /// Fingers.
+    pub fingers: u8,
+    /// Thumb or palm.
+    pub opposite: u8,
+}
+
+/// Watches contacts until a grasp is enclosed, tried and held.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Enclosure {
     /// How far it has come.
     pub grip: Grip,
-    /// Physics steps with contact in each of the last control steps, newest last.
-    contacts: Vec<u8>,
+    /// Of the last control steps, newest last.
+    recent: Vec<Contacts>,
+    /// Physics steps without an enclosing contact since the support went.
+    missed: u32,
 }
 
 impl Default for Enclosure {
     fn default() -> Self {
         Self {
             grip: Grip::Open,
-            contacts: Vec::new(),
+            recent: Vec::new(),
+            missed: 0,
         }
     }
 }
 
 impl Enclosure {
-    /// One control step with `contacts` physics steps of enclosing contact. `in_hand`: whether the
-    /// object is before the palm now. True if the support has to go.
-    pub(super) fn step(&mut self, numbers: &GraspNumbers, contacts: u8, in_hand: bool) -> bool {
+    /// One control step with its contacts. `in_hand`: whether the object is before the palm now.
+    /// True if the support has to go.
+    pub fn step(&mut self, numbers: &GraspNumbers, contacts: Contacts, in_hand: bool) -> bool {
         let window = numbers.hold_steps as usize;
-        if self.contacts.len() == window {
-            self.contacts.remove(0);
+        if self.recent.len() == window {
+            self.recent.remove(0);
         }
-        self.contacts.push(contacts);
+        self.recent.push(contacts);
         let whole = f64::from(numbers.hold_steps * numbers.physics_steps);
         match self.grip {
             Grip::Open => {
-                let full = self.contacts.len() == window;
-                if full && in_hand && self.sum() >= numbers.enclosed_share * whole {
+                let enclosing = self.sum(|contacts| contacts.enclosing);
+                let full = self.recent.len() == window;
+                if full && in_hand && enclosing >= numbers.enclosed_share * whole {
                     self.grip = Grip::Tried(0);
-                    self.contacts.clear();
                     return true;
                 }
             }
             Grip::Tried(steps) => {
+                self.missed += numbers.physics_steps - u32::from(contacts.enclosing);
                 let steps = steps + 1;
-                let missed = f64::from(steps * numbers.physics_steps) - self.sum();
-                self.grip = if missed >= (1.0 - numbers.held_share) * whole {
+                self.grip = if f64::from(self.missed) >= (1.0 - numbers.held_share) * whole {
                     Grip::Failed
                 } else if steps == numbers.hold_steps {
                     Grip::Held
@@ -73,17 +87,18 @@ impl Enclosure {
         false
     }
 
-    /// Share of the window with an enclosing contact, in [0, 1].
+    /// How much of the last second the hand had the object between its sides, in \[0, 1\]: half of it
+    /// is the share with a finger's contact, half that with the thumb's or the palm's.
     #[must_use]
     pub fn share(&self, numbers: &GraspNumbers) -> f64 {
-        if self.grip == Grip::Open {
-            self.sum() / f64::from(numbers.hold_steps * numbers.physics_steps)
-        } else {
-            1.0
-        }
+        let both = self.sum(|contacts| contacts.fingers) + self.sum(|contacts| contacts.opposite);
+        both / f64::from(2 * numbers.hold_steps * numbers.physics_steps)
     }
 
-    fn sum(&self) -> f64 {
-        self.contacts.iter().map(|&n| f64::from(n)).sum()
+    fn sum(&self, of: impl Fn(&Contacts) -> u8) -> f64 {
+        self.recent
+            .iter()
+            .map(|contacts| f64::from(of(contacts)))
+            .sum()
     }
 }

@@ -5,7 +5,7 @@ use babble_body::robot::{Ball, Drive, Posture, Pull, Setup, Touch, World, toward
 use serde::{Deserialize, Serialize};
 
 use super::case::{GraspCase, GraspRequest};
-use super::enclosure::{Enclosure, Grip};
+use super::enclosure::{Contacts, Enclosure, Grip};
 use super::sight::{self, FOVEA_NEURONS};
 use super::task::GraspTask;
 use crate::config::Config;
@@ -97,7 +97,7 @@ pub struct Drawn {
 #[derive(Default)]
 struct Period {
     forces: [f64; 3],
-    enclosing: u8,
+    contacts: Contacts,
     collision: bool,
 }
 
@@ -110,7 +110,10 @@ impl Period {
         {
             *sum += force;
         }
-        self.enclosing += u8::from(touch.encloses());
+        let (fingers, opposite) = (touch.fingers > 0.0, touch.thumb > 0.0 || touch.palm > 0.0);
+        self.contacts.fingers += u8::from(fingers);
+        self.contacts.opposite += u8::from(opposite);
+        self.contacts.enclosing += u8::from(fingers && opposite);
         self.collision |= touch.obstacle;
     }
 }
@@ -308,7 +311,7 @@ impl GraspState {
         self.outcome = if period.collision {
             Outcome::Collision
         } else {
-            self.follow_grip(task, period.enclosing)
+            self.follow_grip(task, period.contacts)
         };
     }
 
@@ -354,10 +357,10 @@ impl GraspState {
     }
 
     /// Takes the support away once the object is enclosed, and sees whether the hand keeps it.
-    fn follow_grip(&mut self, task: &GraspTask, enclosing: u8) -> Outcome {
+    fn follow_grip(&mut self, task: &GraspTask, contacts: Contacts) -> Outcome {
         let numbers = &task.config.grasp;
         let in_hand = task.in_hand(&self.world, self.case.radius());
-        if self.enclosure.step(numbers, enclosing, in_hand) {
+        if self.enclosure.step(numbers, contacts, in_hand) {
             task.robot.remove_support(&mut self.world);
         }
         let centre = task.robot.object(&self.world);

@@ -12,7 +12,7 @@ mod spec;
 mod task;
 
 pub use case::{GraspCase, GraspRequest};
-pub use enclosure::{Enclosure, Grip};
+pub use enclosure::{Contacts, Enclosure, Grip};
 pub use episode::{Drawn, FACTS, Grasp, GraspState, goal_reward};
 pub use numbers::{GraspNumbers, RegionNumbers};
 pub use options::{GraspOptions, Region};

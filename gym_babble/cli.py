@@ -17,8 +17,9 @@ import typer
 from rich.console import Console
 
 from gym_babble import figures, reproduce
+from gym_babble import table2 as grasping
 from gym_babble._core import __version__
-from gym_babble.agents import HebbBabbling
+from gym_babble.agents import HebbBabbling, HebbGrasping
 from gym_babble.compare import CONTENDERS, Settings
 from gym_babble.compare import compare as run_comparison
 from gym_babble.doctor import examine
@@ -38,6 +39,7 @@ from gym_babble.tables import (
     rates_table,
     share,
     table1_table,
+    table2_tables,
     tally,
 )
 
@@ -63,6 +65,7 @@ Seed = Annotated[int, typer.Option(min=0, help="Seed.")]
 Seeds = Annotated[int, typer.Option(min=1, help="How many seeds: 0, 1, ...")]
 Cases = Annotated[int, typer.Option(min=1, help="Cases of Table I, of each seed.")]
 Movements = Annotated[int, typer.Option(min=1, help="Legal movements to learn from.")]
+Babbles = Annotated[int, typer.Option(min=1, help="Babbles to learn from.")]
 Variant = Annotated[Literal["paper", "conjunctive"], typer.Option(help="Variant of the agent.")]
 QuasiStatic = Annotated[
     bool, typer.Option("--quasi-static", help="Babble without the muscles' lag: faster.")
@@ -255,9 +258,9 @@ def render(
         Literal["png", "gif", "mp4"], typer.Option("--format", help="Of the film.")
     ] = "gif",
     seed: Seed = 0,
-    camera: Annotated[Literal["third_person", "eye"], typer.Option(help="Camera.")] = (
-        "third_person"
-    ),
+    camera: Annotated[
+        Literal["third_person", "eye", "fovea", "edges"], typer.Option(help="Camera.")
+    ] = ("third_person"),
     size: Annotated[int, typer.Option(min=16, max=4096, help="Edge of a picture [pixel].")] = 360,
     env_id: EnvId = None,
     body: OwnBody = None,
@@ -380,6 +383,96 @@ def reproduce_fig5(
         highlight=False,
     )
     _name_files([file])
+
+
+@reproduced.command("table2")
+def reproduce_table2(
+    *,
+    seeds: Seeds = 5,
+    cases: Annotated[
+        int, typer.Option(min=2, help="Random cases in each region, of each seed.")
+    ] = 1_000,
+    body: BodyName = "paper",
+    babbles: Babbles = 1_000,
+    hold_trials: Annotated[
+        int, typer.Option(min=0, help="Trials of holding, of each diameter.")
+    ] = 100,
+    folder: Annotated[Path, typer.Option("--out", help="Folder for table2.json and .csv.")] = (
+        Path()
+    ),
+    as_json: AsJson = False,
+) -> None:
+    """Table II: learned hands, and how reaching and grasping end, beside the paper's numbers."""
+    _check_folder_of(folder)
+    table = grasping.table2(
+        seeds=seeds,
+        cases=cases,
+        body=body,
+        babbles=babbles,
+        hold_trials=hold_trials,
+        progress_bar=True,
+    )
+    document = table.to_json()
+    folder.mkdir(exist_ok=True)
+    files = [folder / "table2.json", folder / "table2.csv"]
+    files[0].write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
+    files[1].write_text(table.to_csv(), encoding="utf-8")
+    if as_json:
+        _print_json(document)
+    else:
+        _print(*table2_tables(document))
+    _name_files(files)
+
+
+@reproduced.command("fig7")
+def reproduce_fig7(
+    file: Annotated[Path, typer.Option("--out", help="Picture: png, svg or pdf.")] = Path(
+        "fig7.png"
+    ),
+    babbles: Babbles = 1_000,
+    seed: Seed = 0,
+    body: BodyName = "paper",
+) -> None:
+    """Figure 7: final portions of the hand's ways, bold where it grasped."""
+    _check_picture(file)
+    agent = _learn_grasping(babbles, seed, body)
+    cases = scenarios("fig7", body=body)
+    ways = grasping.grasp_ways(agent, cases, body, progress_bar=True)
+    figures.save(figures.fig7(ways), file)
+    _name_files([file])
+
+
+@reproduced.command("fig8")
+def reproduce_fig8(
+    file: Annotated[Path, typer.Option("--out", help="Picture: png, svg or pdf.")] = Path(
+        "fig8.png"
+    ),
+    babbles: Babbles = 1_000,
+    seed: Seed = 0,
+    body: BodyName = "paper",
+) -> None:
+    """Figure 8: activation of the arm's map, and weights of reaching and grasping."""
+    _check_picture(file)
+    figures.save(figures.fig8(_learn_grasping(babbles, seed, body)), file)
+    _name_files([file])
+
+
+@reproduced.command("sight")
+def reproduce_sight(
+    file: Annotated[Path, typer.Option("--out", help="Picture: png, svg or pdf.")] = Path(
+        "sight.png"
+    ),
+    body: BodyName = "paper",
+) -> None:
+    """What the eye sees of the objects: its view, the fovea, and the edges there."""
+    _check_picture(file)
+    figures.save(figures.sight(grasping.sights(body)), file)
+    _name_files([file])
+
+
+def _learn_grasping(babbles: int, seed: int, body: str) -> HebbGrasping:
+    agent = HebbGrasping(gymnasium.make("BabbleGrasp-v0", body=body), seed=seed)
+    return agent.learn(babbles, progress_bar=True)
 
 
 def _learn(

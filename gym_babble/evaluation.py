@@ -12,13 +12,14 @@ import numpy as np
 
 from gym_babble.errors import ConfigError
 from gym_babble.progress import track
-from gym_babble.scenarios import Scenario, scenarios
+from gym_babble.scenarios import scenarios
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from gym_babble.agents.base import Agent
     from gym_babble.config import BodyLike
+    from gym_babble.scenarios import GraspScenario, Scenario
 
 __all__ = ["Evaluation", "evaluate", "wilson"]
 
@@ -74,7 +75,7 @@ def wilson(count: int, n: int, z: float = 1.959964) -> tuple[float, float]:
 def evaluate(
     agent: Agent,
     env_id: str = "BabbleReachPattern-v0",
-    cases: Sequence[Scenario] | None = None,
+    cases: Sequence[Scenario | GraspScenario] | None = None,
     *,
     body: BodyLike = "paper",
     deterministic: bool = True,
@@ -110,7 +111,9 @@ def evaluate(
     return result
 
 
-def _play(agent: Agent, envs: Any, cases: Sequence[Scenario], *, deterministic: bool) -> Evaluation:
+def _play(
+    agent: Agent, envs: Any, cases: Sequence[Scenario | GraspScenario], *, deterministic: bool
+) -> Evaluation:
     """One episode in each environment; those that have ended go on unseen."""
     n = len(cases)
     observation, _ = envs.reset(seed=0, options={"scenario": list(cases)})

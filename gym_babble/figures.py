@@ -21,10 +21,23 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
+    from gym_babble.agents import HebbGrasping
     from gym_babble.compare import Comparison
     from gym_babble.reproduce import Way, WeightSets
+    from gym_babble.table2 import GraspWay
 
-__all__ = ["check_format", "fig2", "fig4", "fig5", "learning_curves", "save", "svg"]
+__all__ = [
+    "check_format",
+    "fig2",
+    "fig4",
+    "fig5",
+    "fig7",
+    "fig8",
+    "learning_curves",
+    "save",
+    "sight",
+    "svg",
+]
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -222,6 +235,118 @@ def _draw_sets(ax: Axes, sets: WeightSets) -> None:
         xticks=(-60, 0, 60),
         yticks=(-60, 0, 60),
     )
+
+
+@_styled
+def fig7(ways: Sequence[GraspWay], last_m: float = 0.06) -> Figure:
+    """Final portions of the palm's ways, one plot for each diameter.
+
+    Thin: the object was touched; bold: it was grasped; dotted grey: it was missed. Circles are the
+    objects, in their size.
+    """
+    from matplotlib.patches import Circle
+
+    diameters = sorted({way.case["diameter"] for way in ways})
+    size = (4.6 * len(diameters), 4.4)
+    figure, axes = _axes(size, len(diameters), sharex=True, sharey=True)
+    for ax, diameter in zip(axes, diameters, strict=True):
+        chosen = [way for way in ways if way.case["diameter"] == diameter]
+        for x, y in sorted({way.case["object"] for way in chosen}):
+            circle = Circle((100 * x, 100 * y), 50 * diameter, fc="#fbe3e0", ec=RED, lw=0.8)
+            ax.add_patch(circle)
+        for way in chosen:
+            _draw_grasp(ax, way, last_m)
+        ax.plot(0, 0, "s", ms=6, color=INK, zorder=4)
+        ax.annotate("shoulder", (0, 0), xytext=(6, -10), textcoords="offset points")
+        reached, held = (sum(getattr(way, name) for way in chosen) for name in ("reach", "held"))
+        title = f"{100 * diameter:g} cm: {reached} of {len(chosen)} reached, {held} grasped"
+        ax.set(title=title, xlabel="x [cm]", aspect="equal")
+    axes[0].set_ylabel("y [cm]")
+    return figure
+
+
+def _draw_grasp(ax: Axes, way: GraspWay, last_m: float) -> None:
+    path = way.palm
+    steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
+    to_go = steps.sum() - np.concatenate([[0.0], np.cumsum(steps)])
+    path = 100 * path[to_go <= last_m]
+    if way.held:
+        ax.plot(path[:, 0], path[:, 1], color=LEFT, lw=2.6, zorder=3, solid_capstyle="round")
+    elif way.reach:
+        ax.plot(path[:, 0], path[:, 1], color=LEFT, lw=0.9)
+    else:
+        ax.plot(path[:, 0], path[:, 1], color=FAINT, lw=0.8, ls=":")
+
+
+@_styled
+def fig8(agent: HebbGrasping, eye: tuple[float, float] = (0.45, 0.85)) -> Figure:
+    """The arm's map when an object is seen, weights of an eye neuron, and of two hand neurons.
+
+    Top left: activation potential of the arm's map for an object at `eye` (pan and tilt over their
+    ranges). Top right: weights from the eye neuron nearest to it. Bottom: weights from the fovea to
+    the hand neurons nearest to the mean babbled hand, for the smallest and the biggest object.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8.6, 7.2), layout="constrained")
+    weights, side = agent.weights, agent.config["neurons"]
+    reach = weights["reach.weights"]
+    potential = (reach @ _tuning(eye, side, agent.config["sigma"])).reshape(side, side)
+    grid = np.arange(1, side + 1)
+    surface: Any = figure.add_subplot(2, 2, 1, projection="3d")
+    surface.plot_surface(*np.meshgrid(grid, grid), potential, cmap="RdBu_r", lw=0.2, ec=FAINT)
+    surface.set(title="Arm's map: activation potential", xlabel="shoulder", ylabel="elbow")
+    column, row = (round(share * (side - 1)) for share in eye)
+    outward = reach[:, row * side + column].reshape(side, side)
+    title = f"From eye neuron ({column + 1}, {row + 1})"
+    _weights(figure, 2, outward, title=title, axes=("shoulder", "elbow"))
+    left = agent.babbled
+    diameters = np.unique(left["diameter"])
+    for place, diameter in ((3, diameters[0]), (4, diameters[-1])):
+        hand = left["hand"][left["diameter"] == diameter].mean(axis=0)
+        thumb, finger = (round(float(ep) / 90.0 * (side - 1)) for ep in hand)
+        inward = weights["grasp.weights"][finger * side + thumb].reshape(21, 21)[::-1]
+        title = f"To the hand of {100 * diameter:g} cm: EP {hand[0]:.0f}°, {hand[1]:.0f}°"
+        _weights(figure, place, inward, title=title, axes=("fovea, column", "row from below"))
+    return figure
+
+
+def _tuning(value: tuple[float, float], side: int, sigma: float) -> NDArray[np.float64]:
+    """Activities of a map over [0, 1]², Eq. 3."""
+    grid = np.arange(side)
+    x, y = (np.exp(-((grid - share * (side - 1)) ** 2) / (2 * sigma**2)) for share in value)
+    activity: NDArray[np.float64] = np.outer(y, x).ravel()
+    return activity
+
+
+def _weights(
+    figure: Figure, place: int, weights: NDArray[np.float32], *, title: str, axes: tuple[str, str]
+) -> None:
+    ax = figure.add_subplot(2, 2, place)
+    most = float(np.abs(weights).max()) or 1.0
+    side = len(weights)
+    extent = (0.5, side + 0.5, 0.5, side + 0.5)
+    picture = ax.imshow(
+        weights, origin="lower", extent=extent, cmap="RdBu_r", vmin=-most, vmax=most
+    )
+    ticks = {"xticks": (1, 11, 21), "yticks": (1, 11, 21)}
+    ax.set(title=title, xlabel=axes[0], ylabel=axes[1], **ticks)
+    figure.colorbar(picture, ax=ax, shrink=0.8, label="weight")
+
+
+@_styled
+def sight(pictures: Sequence[tuple[str, Sequence[NDArray[np.uint8]]]]) -> Figure:
+    """What the eye sees of objects: a row each with the eye's view, the fovea and its edges."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8.4, 2.9 * len(pictures)), layout="constrained")
+    titles = ("the eye's view", "fovea, 63 × 63", "edges (Sobel)")
+    for row, (name, images) in enumerate(pictures):
+        for column, (image, title) in enumerate(zip(images, titles, strict=True)):
+            ax = figure.add_subplot(len(pictures), 3, 3 * row + column + 1)
+            ax.imshow(image, interpolation="nearest")
+            ax.set(title=f"{name}: {title}", xticks=(), yticks=())
+    return figure
 
 
 @_styled

@@ -28,6 +28,7 @@ __all__ = [
     "share",
     "t_interval",
     "table1_table",
+    "table2_tables",
     "tally",
 ]
 
@@ -135,6 +136,58 @@ def table1_table(document: dict[str, Any], title: str) -> Table:
             for name in (*OUTCOMES, "legal_rate")
         ]
         table.add_row("over seeds\n[dim]t interval[/]", *cells)
+    return table
+
+
+def table2_tables(document: dict[str, Any]) -> list[Table]:
+    """`TableTwo.to_json()` in the paper's layout: hands, rates of each reading, and holding."""
+    sizes = document["sizes"]
+    paper = [document["paper"]["small"], document["paper"]["big"]]
+    names = [f"{100 * size['diameter']:g} cm" for size in sizes]
+    printed = dict(zip(names, paper, strict=False)) if len(sizes) == 2 else {}
+    heads = ["", "recalled\n[dim]spread[/]", "babbled\n[dim]spread[/]", "paper", "paper's\nideal"]
+    hands = plain_table("Table II: equilibrium points, 90° − flexion [deg]", heads)
+    for name, size in zip(names, sizes, strict=True):
+        for digit, found in size["hand"].items():
+            cells = [
+                f"{found[mean]:.2f}\n[dim]{found[spread]:.2f}[/]"
+                for mean, spread in (("mean", "spread"), ("babbled_mean", "babbled_spread"))
+            ]
+            known = printed.get(name, {}).get(digit)
+            theirs = [f"{known['mean']:.2f}", f"{known['ideal']:.0f}"] if known else ["", ""]
+            hands.add_row(f"{name}, {digit}", *cells, *theirs)
+    rates = plain_table(
+        "\nReached, and grasped without support",
+        ["", "tests", "any part\ntouches", "palm\ntouches", "grasped", "paper:\nreach", "grasp"],
+    )
+    for name, size in zip(names, sizes, strict=True):
+        for protocol, found in size["tests"].items():
+            pooled = found["pooled"]
+            cells = [
+                f"{share(pooled[fact]['rate'])}\n{_interval(pooled[fact])}"
+                for fact in ("reach", "palm_reach", "held")
+            ]
+            known = printed.get(name) if protocol == "table2" else None
+            theirs = [share(known["reach"]), share(known["held"])] if known else ["", ""]
+            rates.add_row(f"{name}, {protocol}", f"{pooled['tests']:,}", *cells, *theirs)
+    return [hands, rates, *([_hold_table(document["hold"])] if document["hold"] else [])]
+
+
+def _hold_table(rates: Sequence[dict[str, Any]]) -> Table:
+    table = plain_table(
+        "\nHeld through 10 s of arm motion without support",
+        ["diameter", "held", "of", "rate", "deepest\n[dim]mm[/]", "flexion\n[dim]thumb, finger[/]"],
+    )
+    for rate in rates:
+        thumb, finger = rate["flexion_deg"]
+        table.add_row(
+            f"{100 * rate['diameter']:g} cm",
+            str(rate["held"]),
+            str(rate["trials"]),
+            f"{share(rate['rate'])}\n{_interval(rate)}",
+            f"{rate['penetration_mm']:.2f}",
+            f"{thumb:.1f}° {finger:.1f}°",
+        )
     return table
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from gym_babble.spaces import Task
 
-CAMERAS = ("third_person", "eye")
+CAMERAS = ("third_person", "eye", "fovea", "edges")
 RENDER_MODES = ("human", "rgb_array", "rgb_array_list")
 SCENARIO_LABELS = ("protocol", "index")
 """Parts of a scenario that say where it is from."""

@@ -82,7 +82,7 @@ class GraspChoices(Choices):
         self.control, self.region = control, region
 
     def part_of_case(self, name: str, value: Any) -> Any:
-        """Two numbers, a diameter, or the obstacle (x, y, radius), from (x, y) with the config's."""
+        """Two numbers, a diameter, or the obstacle (x, y, radius); of (x, y) it is the config's."""
         if name == "diameter":
             if value is None:
                 return None
@@ -250,7 +250,8 @@ class BabbleGraspEnv(BabbleEnv):
                 whatever the action.
             max_episode_steps: Time limit in control steps; 240, or 500 in region "full", if not
                 given.
-            camera: "third_person" or "eye".
+            camera: "third_person", "eye", "fovea" (the middle 63 × 63 pixels of the eye's image) or
+                "edges" (in the fovea).
             width: Width of a picture [pixel].
             height: Height of a picture [pixel].
             retina_size: Edge of the eye's image in obs="retina" [pixel]; 630 is the paper's.

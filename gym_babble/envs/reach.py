@@ -196,7 +196,8 @@ class BabbleReachEnv(BabbleEnv):
                 differs from a profile, or a `gym_babble.Config`.
             settled: Whether success also needs the arm to have come to rest.
             max_episode_steps: Time limit in control steps; none is needed in `pattern` control.
-            camera: "third_person" or "eye".
+            camera: "third_person", "eye", "fovea" (the middle 63 × 63 pixels of the eye's image) or
+                "edges" (in the fovea).
             width: Width of a picture [pixel].
             height: Height of a picture [pixel].
             retina_size: Edge of the eye's image in obs="retina" [pixel]; 630 is the paper's.

@@ -1,10 +1,11 @@
 //! What the eye, and a person, sees of an episode of any task.
 
 use babble_body::eye::{
-    Eye, Gaze, Pinhole, Primitive, is_red, render_rgb, render_smooth, third_person,
+    Eye, Gaze, Pinhole, Primitive, foveal_edges, foveal_picture, is_red, render_rgb, render_smooth,
+    third_person,
 };
-use image::RgbImage;
-use image::imageops::thumbnail;
+use image::imageops::{FilterType, resize, thumbnail};
+use image::{DynamicImage, RgbImage};
 
 use crate::choice::named_enum;
 use crate::error::EnvError;
@@ -15,7 +16,11 @@ named_enum!(
     /// From the front right and above.
     ThirdPerson = "third_person",
     /// Through the eye.
-    Eye = "eye"
+    Eye = "eye",
+    /// The middle of the eye's image, which is looked at closely.
+    Fovea = "fovea",
+    /// The edges in the fovea.
+    Edges = "edges"
 );
 
 /// Smallest and largest edge of a picture \[pixel\].
@@ -62,6 +67,15 @@ impl Scene<'_> {
                 render_smooth(self.things, &third_person(width as usize, height as usize))
             }
             View::Eye => self.through_the_eye(width, height),
+            View::Fovea => {
+                let fovea = foveal_picture(self.things, &self.eye.camera(self.gaze));
+                resize(&fovea, width, height, FilterType::Nearest)
+            }
+            View::Edges => {
+                let edges = foveal_edges(self.things, &self.eye.camera(self.gaze));
+                let edges = DynamicImage::ImageLuma8(edges).into_rgb8();
+                resize(&edges, width, height, FilterType::Nearest)
+            }
         })
     }
 

@@ -105,8 +105,10 @@ def list_environments(as_json: AsJson = False) -> None:
         return
     table = plain_table(None, ["id", "obs", "control", "reward", "steps", "solved at"], left=4)
     for row in ENVIRONMENTS:
-        steps = "1" if row.max_episode_steps is None else str(row.max_episode_steps)
-        table.add_row(row.id, row.obs, row.control, row.reward, steps, f"{row.reward_threshold:g}")
+        env: Any = gymnasium.make(row.id)
+        steps = str(env.unwrapped.choices.spec.max_episode_steps)
+        solved_at = "" if row.reward_threshold is None else f"{row.reward_threshold:g}"
+        table.add_row(row.id, row.obs, row.control, row.reward, steps, solved_at)
     _print(table)
 
 

@@ -207,10 +207,18 @@ def _entries_table(title: str, entries: Sequence[dict[str, Any]]) -> Table:
     heads = ["name", "parts", "low", "high", "unit", "meaning"]
     table = plain_table(f"\n{title}", heads, left=len(heads))
     for entry in entries:
-        low, high = ("\n".join(f"{x:.4g}" for x in entry[end]) for end in ("low", "high"))
-        labels = "\n".join(entry["labels"])
-        table.add_row(entry["name"], labels, low, high, entry["unit"], entry["description"])
+        table.add_row(entry["name"], *_parts(entry), entry["unit"], entry["description"])
     return table
+
+
+def _parts(entry: dict[str, Any]) -> tuple[str, ...]:
+    """Labels and bounds of an entry; the parts of a map, which are all alike, are counted."""
+    n = len(entry["labels"])
+    rows = list(zip(entry["labels"], entry["low"], entry["high"], strict=True))
+    if len(set(rows)) == 1 < n:
+        rows = [(f"{n} {rows[0][0]}", *rows[0][1:])]
+    labels, lows, highs = zip(*rows, strict=True)
+    return "\n".join(labels), *("\n".join(f"{x:.4g}" for x in ends) for ends in (lows, highs))
 
 
 def doctor_table(found: dict[str, Any]) -> Table:

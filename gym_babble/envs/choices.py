@@ -142,8 +142,22 @@ def check_whole(name: str, value: Any, low: int, high: int, unit: str) -> None:
         raise ConfigError(f"{name} = {value!r} is not a whole number in [{low}, {high}] {unit}")
 
 
-def numbers(name: str, value: Any, n: int) -> list[float] | None:
-    """The n numbers of a part of a case [m]; None is none.
+def check_flags(**flags: Any) -> None:
+    """Raises `ConfigError` unless each value is True or False: other values have a truth too."""
+    for name, value in flags.items():
+        if not isinstance(value, bool | np.bool_):
+            raise ConfigError(f"{name} = {value!r} is not True or False")
+
+
+def check_names(**names: Any) -> None:
+    """Raises `ConfigError` unless each value is a text; the core knows which ones there are."""
+    for name, value in names.items():
+        if not isinstance(value, str):
+            raise ConfigError(f"{name} = {value!r} is not a name")
+
+
+def numbers(name: str, value: Any, n: int, unit: str = "m") -> list[float] | None:
+    """The n numbers of a part of a case; None is none.
 
     Raises:
         ScenarioError: The value is not n numbers.
@@ -153,7 +167,7 @@ def numbers(name: str, value: Any, n: int) -> list[float] | None:
     try:
         found = [float(x) for x in value]
     except (TypeError, ValueError) as error:
-        raise ScenarioError(f"{name} = {value!r} is not made of {n} numbers [m]") from error
+        raise ScenarioError(f"{name} = {value!r} is not made of {n} numbers [{unit}]") from error
     if len(found) != n:
-        raise ScenarioError(f"{name} = {value!r} has {len(found)} numbers, expected {n} [m]")
+        raise ScenarioError(f"{name} = {value!r} has {len(found)} numbers, expected {n} [{unit}]")
     return found

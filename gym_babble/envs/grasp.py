@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +12,7 @@ from gymnasium.vector import AutoresetMode
 
 from gym_babble import _core
 from gym_babble.config import BodyLike, config_json
-from gym_babble.envs.choices import Choices, check_whole, numbers
+from gym_babble.envs.choices import Choices, check_flags, check_names, check_whole, numbers
 from gym_babble.envs.single import BabbleEnv
 from gym_babble.envs.vector import BabbleVectorEnv
 from gym_babble.errors import ConfigError, ScenarioError
@@ -35,12 +36,20 @@ def grasp_config(
         return text
     document = json.loads(text)
     if diameters is not None:
-        try:
-            document["grasp"]["diameters_m"] = [float(d) for d in diameters]
-        except (TypeError, ValueError) as error:
-            raise ConfigError(f"diameters = {diameters!r} is not a list of numbers [m]") from error
-    document["grasp"]["any_diameter_between"] = bool(any_diameter_between)
+        document["grasp"]["diameters_m"] = _diameters(diameters)
+    if any_diameter_between:
+        document["grasp"]["any_diameter_between"] = True
     return config_json(document)
+
+
+def _diameters(given: Sequence[float]) -> list[float]:
+    try:
+        found = [float(d) for d in given]
+    except (TypeError, ValueError) as error:
+        raise ConfigError(f"diameters = {given!r} is not a list of numbers [m]") from error
+    if not all(map(math.isfinite, found)):
+        raise ConfigError(f"diameters = {given!r}: they must be finite and in [0.005, 0.2] m")
+    return found
 
 
 class GraspChoices(Choices):
@@ -66,6 +75,8 @@ class GraspChoices(Choices):
         render_mode: str | None,
         **pictures: Any,
     ) -> None:
+        check_names(control=control, reward=reward, region=region)
+        check_flags(any_diameter_between=any_diameter_between, enclosure_reflex=enclosure_reflex)
         if max_episode_steps is not None:
             check_whole("max_episode_steps", max_episode_steps, 1, 1_000_000, "control steps")
         task = _core.GraspTask(
@@ -74,7 +85,7 @@ class GraspChoices(Choices):
             reward=reward,
             goal=obs == "goal",
             region=region,
-            enclosure_reflex=enclosure_reflex,
+            enclosure_reflex=bool(enclosure_reflex),
             max_episode_steps=max_episode_steps,
             record=render_mode is not None,
         )
@@ -91,7 +102,7 @@ class GraspChoices(Choices):
             except (TypeError, ValueError) as error:
                 raise ScenarioError(f"diameter = {value!r} is not a number [m]") from error
         if name != "obstacle":
-            return numbers(name, value, 2)
+            return numbers(name, value, 2, "rad" if name == "start" else "m")
         if isinstance(value, Sequence | np.ndarray) and len(value) == 2:
             value = (*value, self.task.obstacle_radius)
         return numbers(name, value, 3)
@@ -245,7 +256,8 @@ class BabbleGraspEnv(BabbleEnv):
                 differs from a profile, or a `gym_babble.Config`.
             region: "palm_side" or "full": where objects lie and arms start.
             diameters: Of the objects [m], to draw from; the config's 2.4 and 6 cm if not given.
-            any_diameter_between: Draw from all diameters between the smallest and the largest.
+            any_diameter_between: Draw from all diameters between the smallest and the largest, as
+                a config can say too.
             enclosure_reflex: Whether the hand closes by reflex from the first touch of the palm on,
                 whatever the action.
             max_episode_steps: Time limit in control steps; 240, or 500 in region "full", if not

@@ -10,7 +10,7 @@ from gymnasium.vector import AutoresetMode
 
 from gym_babble import _core
 from gym_babble.config import BodyLike, config_json
-from gym_babble.envs.choices import Choices, check_whole, numbers
+from gym_babble.envs.choices import Choices, check_flags, check_names, check_whole, numbers
 from gym_babble.envs.single import BabbleEnv
 from gym_babble.envs.vector import BabbleVectorEnv
 
@@ -40,13 +40,15 @@ class ReachChoices(Choices):
         render_mode: str | None,
         **pictures: Any,
     ) -> None:
+        check_names(control=control, reward=reward)
+        check_flags(settled=settled)
         check_whole("max_episode_steps", max_episode_steps, 1, 1_000_000, "control steps")
         task = _core.ReachTask(
             config_json(body),
             control=control,
             reward=reward,
             goal=obs == "goal",
-            settled=settled,
+            settled=bool(settled),
             # A movement is an episode, whatever limit was registered for other controls.
             max_episode_steps=1 if control == "pattern" else max_episode_steps,
             record=render_mode is not None,

@@ -6,9 +6,24 @@ from typing import Any
 
 import numpy as np
 
+from gym_babble.envs import (
+    BabbleGraspEnv,
+    BabbleGraspVectorEnv,
+    BabbleReachEnv,
+    BabbleReachVectorEnv,
+)
+
 IDS = ("BabbleReach-v0", "BabbleReachSparse-v0", "BabbleReachGoal-v0", "BabbleReachPattern-v0")
+GRASP_IDS = ("BabbleGrasp-v0", "BabbleGraspSparse-v0", "BabbleGraspGoal-v0")
+ALL_IDS = (*IDS, *GRASP_IDS)
 CONTROLS = ("delta_posture", "posture", "torque", "pattern")
 OBSERVATIONS = ("senses", "flat", "goal", "retina")
+REGIONS = ("palm_side", "full")
+
+TASKS = {"reach": BabbleReachEnv, "grasp": BabbleGraspEnv}
+BATCHES = {"reach": BabbleReachVectorEnv, "grasp": BabbleGraspVectorEnv}
+CONTROLS_OF = {"reach": CONTROLS, "grasp": CONTROLS[:3]}
+EACH_CONTROL = [(task, control) for task, controls in CONTROLS_OF.items() for control in controls]
 
 
 def rewards_for(obs: str) -> tuple[str, ...]:
@@ -21,6 +36,17 @@ CHOICES = [
     for control in CONTROLS
     for reward in rewards_for(obs)
 ]
+GRASP_CHOICES = [
+    {**choices, "region": region}
+    for choices in CHOICES
+    if choices["control"] in CONTROLS_OF["grasp"]
+    for region in REGIONS
+]
+ALL_CHOICES = [
+    *((IDS[0], choices) for choices in CHOICES),
+    *((GRASP_IDS[0], choices) for choices in GRASP_CHOICES),
+]
+"""Every combination of named choices, with an id that takes it."""
 
 
 def assert_same(one: Any, other: Any, where: str = "") -> None:

@@ -1,0 +1,267 @@
+"""What holds for the environments of every task, seen through `gymnasium.make`."""
+
+from __future__ import annotations
+
+import copy
+import multiprocessing
+import pickle
+import warnings
+
+import gymnasium
+import numpy as np
+import pytest
+from comparing import (
+    ALL_CHOICES,
+    ALL_IDS,
+    EACH_CONTROL,
+    GRASP_IDS,
+    IDS,
+    OBSERVATIONS,
+    REGIONS,
+    TASKS,
+    assert_same,
+    drawn_actions,
+    rollout,
+)
+from gymnasium.utils.env_checker import check_env
+from gymnasium.wrappers import (
+    FlattenObservation,
+    FrameStackObservation,
+    NormalizeReward,
+    RecordEpisodeStatistics,
+)
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+SENSES = {
+    "reach": ("eye", "obstacle", "hand", "arm", "stretch", "time"),
+    "grasp": ("eye", "fovea", "arm", "hand", "stretch", "touch", "time"),
+}
+FACTS = {
+    "reach": ("is_success", "ever_success"),
+    "grasp": ("is_success", "ever_success", "reach", "palm_reach", "held"),
+}
+each_task = pytest.mark.parametrize("task", TASKS)
+
+
+@pytest.mark.parametrize("env_id", ALL_IDS)
+def test_gymnasiums_checker_is_content_pictures_included(env_id, monkeypatch):
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check_env(gymnasium.make(env_id, render_mode="rgb_array", width=64, height=48).unwrapped)
+
+
+@pytest.mark.parametrize(
+    ("env_id", "choices"),
+    ALL_CHOICES,
+    ids=lambda x: x if isinstance(x, str) else "-".join(x.values()),
+)
+def test_gymnasiums_checker_is_content_with_every_choice(env_id, choices):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        env = gymnasium.make(env_id, retina_size=36, **choices).unwrapped
+        check_env(env, skip_render_check=True)
+
+
+EXTREMES = st.sampled_from([-1e30, -3.0, -1.0, -1e-40, 0.0, 0.5, 1.0, 2.0, 3e38])
+ACTIONS = st.lists(st.tuples(*[EXTREMES] * 4), min_size=1, max_size=60)
+
+
+@pytest.mark.parametrize("of", EACH_CONTROL, ids="-".join)
+@settings(max_examples=25, deadline=None)
+@given(
+    actions=ACTIONS,
+    seed=st.integers(0, 10_000),
+    body=st.sampled_from(["paper", "icub"]),
+    region=st.sampled_from(REGIONS),
+)
+def test_spaces_contain_every_observation(of, actions, seed, body, region):
+    task, control = of
+    where = {"region": region} if task == "grasp" else {}
+    for obs in ("flat", "goal"):
+        reward = "sparse" if obs == "goal" else "progress"
+        env = TASKS[task](obs=obs, control=control, reward=reward, body=body, **where)
+        observation, _ = env.reset(seed=seed)
+        assert observation in env.observation_space
+        for action in actions:
+            for _ in range(4):
+                observation, value, terminated, truncated, _ = env.step(
+                    np.array(action[: env.action_space.shape[0]])
+                )
+                assert observation in env.observation_space, observation
+                assert np.isfinite(value)
+                if terminated or truncated:
+                    env.reset()
+
+
+@pytest.mark.parametrize("env_id", ALL_IDS)
+def test_info_has_the_documented_keys(env_id):
+    env = gymnasium.make(env_id)
+    _, info = env.reset(seed=0)
+    stepped = env.step(env.action_space.sample())[4]
+    facts = FACTS["grasp" if env_id in GRASP_IDS else "reach"]
+    assert env.unwrapped.choices.spec.facts == facts
+    for shown in (info, stepped):
+        assert tuple(shown) == (*facts, "outcome", "reward_terms")
+        assert all(type(shown[fact]) is bool for fact in facts)
+        assert tuple(shown["reward_terms"]) == env.unwrapped.choices.spec.reward_terms
+    assert info["outcome"] == "running"
+    assert not any(info[fact] for fact in facts)
+
+
+# Reproducibility.
+
+
+@pytest.mark.parametrize("env_id", ALL_IDS)
+def test_one_seed_fixes_all_the_episodes_that_follow(env_id):
+    env = gymnasium.make(env_id)
+    actions = drawn_actions(env.action_space, 300, 1)
+    env.reset(seed=42)
+    first = rollout(env, actions)
+    env.reset(seed=7)
+    rollout(env, actions[:20])
+    env.reset(seed=42)
+    assert_same(first, rollout(env, actions))
+    again = gymnasium.make(env_id)
+    again.reset(seed=42)
+    assert_same(first, rollout(again, actions))
+    flat = gymnasium.make(env_id, obs="flat", reward="sparse")
+    assert len({flat.reset(seed=seed)[0].tobytes() for seed in range(20)}) == 20
+
+
+def unseeded_rollout(env_id, seed):
+    env = gymnasium.make(env_id)
+    actions = drawn_actions(env.action_space, 60, 1)
+    env.reset(seed=seed)
+    return rollout(env, actions)
+
+
+def test_another_process_plays_the_same():
+    played = (IDS[0], IDS[3], GRASP_IDS[0])
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        elsewhere = pool.starmap(unseeded_rollout, [(env_id, 3) for env_id in played])
+    for env_id, seen in zip(played, elsewhere, strict=True):
+        assert_same(seen, unseeded_rollout(env_id, 3))
+
+
+def copies(env):
+    yield copy.deepcopy(env)
+    yield pickle.loads(pickle.dumps(env))  # noqa: S301 - our own bytes
+
+
+@pytest.mark.parametrize("obs", OBSERVATIONS)
+@each_task
+def test_copies_go_on_as_their_originals_wrapped_or_not(task, obs):
+    reward = "sparse" if obs == "goal" else "progress"
+    choices = {"obs": obs, "reward": reward, "retina_size": 36}
+    for env in (
+        TASKS[task](**choices),
+        RecordEpisodeStatistics(gymnasium.make(f"Babble{task.title()}-v0", **choices)),
+    ):
+        before, after = (
+            drawn_actions(env.action_space, 40, 2)[:7],
+            drawn_actions(env.action_space, 300 if obs != "retina" else 30, 3),
+        )
+        env.reset(seed=9, options={"obstacle": (0.15, 0.2)})
+        rollout(env, before, reset=False)
+        made = list(copies(env))
+        expected = rollout(env, after, reset=False)
+        for other in made:
+            seen = rollout(other, after, reset=False)
+            for a, b in zip(expected, seen, strict=True):
+                a[-1].pop("episode", None), b[-1].pop("episode", None)
+            assert_same(expected, seen)
+
+
+@each_task
+def test_a_copy_from_before_the_first_reset_is_as_good_as_new(task):
+    for other in copies(gymnasium.make(f"Babble{task.title()}-v0", render_mode="rgb_array")):
+        with pytest.raises(gymnasium.error.ResetNeeded):
+            other.unwrapped.render()
+        assert other.reset(seed=1)[0]["eye"].shape == (2,)
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    of=st.sampled_from(EACH_CONTROL),
+    goal=st.booleans(),
+    seed=st.integers(0, 1000),
+    moment=st.integers(0, 120),
+)
+def test_a_state_continues_to_the_bit_from_any_moment(of, goal, seed, moment):
+    task, control = of
+    choices = {"obs": "goal", "reward": "sparse"} if goal else {}
+    env, other = (TASKS[task](control=control, **choices) for _ in range(2))
+    actions = drawn_actions(env.action_space, moment + 60, seed)
+    env.reset(seed=seed)
+    rollout(env, actions[:moment], reset=False)
+    state, hash_before = env.get_state(), env.state_hash()
+    assert env.get_state() == state
+    expected = rollout(env, actions[moment:], reset=False)
+    other.reset(seed=seed + 1)
+    other.set_state(state)
+    assert other.state_hash() == hash_before
+    assert_same(expected, rollout(other, actions[moment:], reset=False))
+    assert other.state_hash() == env.state_hash() != hash_before
+
+
+@each_task
+def test_what_was_returned_never_changes(task):
+    env = TASKS[task](obs="retina", retina_size=36)
+    kept = [env.reset(seed=0)]
+    for action in drawn_actions(env.action_space, 30, 0):
+        kept.append(env.step(action))
+        if kept[-1][2]:
+            break
+    frozen = copy.deepcopy(kept)
+    env.reset()
+    for action in drawn_actions(env.action_space, 10, 1):
+        env.step(action)
+    assert_same(frozen, kept)
+
+
+# Wrappers and the registry.
+
+
+@each_task
+def test_gymnasiums_wrappers_work(task):
+    env = gymnasium.make(f"Babble{task.title()}-v0", max_episode_steps=50)
+    size = gymnasium.spaces.flatdim(env.observation_space)
+    env = NormalizeReward(
+        FrameStackObservation(FlattenObservation(RecordEpisodeStatistics(env)), 3)
+    )
+    assert env.observation_space.shape == (3, size)
+    for episode in range(3):
+        observation, _ = env.reset(seed=episode)
+        ended = False
+        while not ended:
+            assert observation in env.observation_space
+            observation, _, terminated, truncated, info = env.step(env.action_space.sample())
+            ended = terminated or truncated
+        assert info["episode"]["l"] <= 50
+
+
+@each_task
+def test_flat_is_the_senses_in_the_documented_order(task):
+    actions = drawn_actions(TASKS[task]().action_space, 30, 0)
+    seen = {}
+    for obs in ("senses", "flat"):
+        env = TASKS[task](obs=obs)
+        env.reset(seed=6)
+        seen[obs] = [result[0] for result in rollout(env, actions)]
+    for senses, flat in zip(seen["senses"], seen["flat"], strict=True):
+        assert tuple(senses) == SENSES[task]
+        assert_same(np.concatenate([senses[name] for name in SENSES[task]]), flat)
+
+
+def test_the_registry_has_the_ids_with_thresholds_and_limits():
+    limits = {env_id: gymnasium.spec(env_id).max_episode_steps for env_id in ALL_IDS}
+    # Where the core sets the limit, a wrapper's would cut what the core still counts as running.
+    own = dict.fromkeys((IDS[3], *GRASP_IDS))
+    assert limits == {**dict.fromkeys(IDS[:3], 240), **own}
+    for env_id in ALL_IDS:
+        spec = gymnasium.spec(env_id)
+        assert (spec.reward_threshold is None) == (env_id == GRASP_IDS[2])
+        assert set(spec.kwargs) == {"obs", "control", "reward"}
+        assert gymnasium.make(f"gym_babble:{env_id}").unwrapped.spec.id == env_id

@@ -77,12 +77,12 @@ pub enum EnvError {
         tries: u32,
     },
     /// No case of grasping could be drawn: the config leaves no room for one.
-    #[error(
-        "no case in {tries} tries in which the object can be brought to the palm and the arm at the start is clear of it"
-    )]
+    #[error("no case in {tries} tries that can be played; in the last one, {problem}")]
     NoGraspCase {
         /// How many were tried.
         tries: u32,
+        /// Why the last one cannot be played.
+        problem: String,
     },
     /// The bytes are not a snapshot of this environment.
     #[error("snapshot: {problem}")]

@@ -61,26 +61,27 @@ impl GraspRequest {
     /// cannot be drawn.
     pub fn draw(&self, task: &GraspTask, stream: &mut Stream) -> Result<GraspCase, EnvError> {
         self.check(task)?;
-        let mut problem = None;
-        for _ in 0..self.tries() {
-            let case = self.fill(task, stream);
-            match playable(task, &case, self) {
-                Ok(()) => return Ok(case),
-                Err(error) => problem = Some(error),
-            }
-        }
-        match problem {
-            // Nothing was left to draw: the case itself is what cannot be played.
-            Some(error) if self.tries() == 1 => Err(error),
-            _ => Err(EnvError::NoGraspCase { tries: MAX_TRIES }),
-        }
-    }
-
-    const fn tries(&self) -> u32 {
-        if self.start.is_some() && self.object.is_some() {
+        let placed = self.start.is_some() && self.object.is_some();
+        let tries = if placed && self.diameter.is_some() {
             1
         } else {
             MAX_TRIES
+        };
+        let mut last = None;
+        for _ in 0..tries {
+            let case = self.fill(task, stream);
+            match playable(task, &case, self) {
+                Ok(()) => return Ok(case),
+                Err(error) => last = Some(error),
+            }
+        }
+        match last {
+            // The places were given, and no diameter fits between them.
+            Some(error) if placed => Err(error),
+            last => Err(EnvError::NoGraspCase {
+                tries,
+                problem: last.map_or_else(String::new, |error| error.to_string()),
+            }),
         }
     }
 

@@ -207,7 +207,10 @@ impl GraspTask {
                 return Ok(posture);
             }
         }
-        Err(EnvError::NoGraspCase { tries: MAX_TRIES })
+        Err(EnvError::NoGraspCase {
+            tries: MAX_TRIES,
+            problem: "an object in the hand is not clear of the upper arm".to_owned(),
+        })
     }
 
     /// Whether the object is on the palm's side and near it.

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use babble_body::robot::{Drive, Pull, World, towards};
 use babble_env::grasp::{GraspRequest, GraspState, Grip};
 use babble_env::{Batch, Control, GraspOptions, GraspTask, Outcome};
+use nalgebra::Vector2;
 use playing::grasping::{
     self, CONTROLS, HELD, IS_SUCCESS, PALM_REACH, REACH, TOUCH, asked, asking_for, before_the_palm,
     grasp, grasp_with, obstacle, play, script, with_control,
@@ -142,6 +143,21 @@ fn the_reflex_waits_for_the_palm() {
             env.step(&action).unwrap();
         }
         assert!(state(&env).palm_reach && !state(&env).reflex);
+        // An object before the fingers is touched, and not by the palm.
+        let fingertip = Vector2::new(task.robot.palm_centre() + 0.07, 0.02 + 0.012);
+        let object = task.arm.with_tip(fingertip).fingertip([0.2, 0.8]);
+        let request = GraspRequest {
+            object: Some(object.into()),
+            ..before_the_palm(&task, 0.024)
+        };
+        let mut env = asked(task.clone(), 0, request);
+        let there = task.robot.open_hand([0.4, 0.8]);
+        for _ in 0..20 {
+            let action = asking_for(&task, state(&env), there);
+            env.step(&action).unwrap();
+        }
+        assert!(state(&env).reach && !state(&env).palm_reach, "{control}");
+        assert!(!state(&env).reflex);
     }
 }
 

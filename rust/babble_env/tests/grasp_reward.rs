@@ -307,3 +307,31 @@ fn a_loss_freezes_the_goal_form() {
     stands_still(&mut env, Outcome::Lost, task.robot.open_hand([2.5, 0.4]));
     assert!(!state(&env).is_success);
 }
+
+/// A hand that opens on the way drops the object: 10 cm below the plane it is lost, and not before,
+/// though it was held. Catches a drop that only the support's absence would tell.
+#[test]
+fn what_is_dropped_is_lost() {
+    let task = grasp(goal_form(Control::Posture));
+    let near = before_the_palm(&task, 0.04);
+    let [x, y] = near.object.unwrap();
+    let goal = Some([x - 0.08, y]);
+    let mut env = asked(task.clone(), 0, GraspRequest { goal, ..near });
+    let (mut held, mut lost) = (false, 0);
+    for _ in 0..task.options.max_episode_steps {
+        let now = state(&env);
+        held |= now.enclosure.grip == Grip::Held;
+        let action = if held {
+            asking_for(&task, now, task.robot.open_hand(now.case.start))
+        } else {
+            carry(&task, now)
+        };
+        env.step(&action).unwrap();
+        let (shown, state) = (record(&env), state(&env));
+        let below = task.robot.object(&state.world).z < -0.1;
+        assert_eq!(state.outcome == Outcome::Lost, below);
+        assert_eq!(shown.standing.facts[4], state.enclosure.grip == Grip::Held);
+        lost += u32::from(below);
+    }
+    assert!(held && lost > 20, "{held} {lost}");
+}

@@ -103,6 +103,27 @@ fn stretch_leads_to_the_equilibrium_points() {
     }
 }
 
+/// Muscles can be stretched by the joint ranges, and torques by as much as a spring would have to be
+/// that pulls as hard as the greatest one.
+#[test]
+fn stretch_is_bounded_by_ranges_or_torques() {
+    for control in CONTROLS {
+        let bounds = bounds(&grasp(with_control(control)));
+        let expected = if control == Control::Torque {
+            // 200 N·m over 200 N·m/rad, and 0.5 over 0.5.
+            [1.0; 4]
+        } else {
+            [255.0, 125.0, 90.0, 90.0].map(f32::to_radians)
+        };
+        for (&(name, low, high), most) in bounds[STRETCH..].iter().zip(expected) {
+            assert!(
+                (high - most).abs() < 1e-6 && low == -high,
+                "{control} {name}: {high}"
+            );
+        }
+    }
+}
+
 /// The palm is first felt on the step after which the palm has touched the object, and something is
 /// felt only of an object that was touched. Catches forces of another part, and facts that lag.
 #[test]

@@ -2,7 +2,7 @@
 
 mod playing;
 
-use babble_body::eye::{Gaze, Material, Primitive, Shape, red_centroid};
+use babble_body::eye::{Gaze, Material, Primitive, Shape, foveal_shape, red_centroid};
 use babble_body::pose;
 use babble_env::batch::Record;
 use babble_env::grasp::{FOVEA_NEURONS, GraspRequest, GraspState, Region, see};
@@ -173,7 +173,7 @@ fn scene(task: &GraspTask, state: &GraspState) -> Vec<Primitive> {
 /// The edges in the fovea.
 fn fovea(task: &GraspTask, scene: &[Primitive], gaze: Gaze) -> Vec<f32> {
     let mut edges = [0.0; FOVEA_NEURONS];
-    task.eye.fovea(scene, gaze, &mut edges);
+    foveal_shape(scene, &task.eye.camera(gaze), &mut edges);
     edges.to_vec()
 }
 

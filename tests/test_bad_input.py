@@ -5,11 +5,11 @@ from __future__ import annotations
 import gymnasium
 import numpy as np
 import pytest
-from comparing import CONTROLS, assert_same
+from comparing import BATCHES, EACH_CONTROL, TASKS, assert_same
 from gymnasium.error import ResetNeeded
 
 from gym_babble import scenarios
-from gym_babble.envs import BabbleReachEnv, BabbleReachVectorEnv
+from gym_babble.envs import BabbleGraspEnv, BabbleReachEnv, BabbleReachVectorEnv
 from gym_babble.errors import (
     ActionError,
     BabbleError,
@@ -20,6 +20,19 @@ from gym_babble.errors import (
 )
 
 NAN, INF = float("nan"), float("inf")
+WIDTH = {"reach": 2, "grasp": 4}
+each_task = pytest.mark.parametrize("task", TASKS)
+
+
+def wide(task, action):
+    """A bad pair as a bad action of a task: the numbers of grasping are the pair's, twice."""
+    if task == "reach":
+        return action
+    if isinstance(action, np.ndarray):
+        return np.concatenate([action, action], axis=-1 if action.shape[0] == 1 else 0)
+    return action * 2 if isinstance(action, list) else action
+
+
 ACTIONS = {
     "nan": [NAN, 0],
     "second is nan": np.array([0, NAN], np.float32),
@@ -48,9 +61,17 @@ each_action = pytest.mark.parametrize("action", ACTIONS.values(), ids=ACTIONS.ke
 
 
 @each_action
-@pytest.mark.parametrize("control", ["delta_posture", "pattern"])
-def test_a_bad_action_is_refused_and_nothing_is_stepped(action, control):
-    env = BabbleReachEnv(control=control)
+@pytest.mark.parametrize(
+    ("task", "control"),
+    [
+        ("reach", "delta_posture"),
+        ("reach", "pattern"),
+        ("grasp", "delta_posture"),
+        ("grasp", "torque"),
+    ],
+)
+def test_a_bad_action_is_refused_and_nothing_is_stepped(action, task, control):
+    env, action = TASKS[task](control=control), wide(task, action)
     env.reset(seed=0)
     before = env.state_hash()
     with pytest.raises(ActionError, match="action") as caught:
@@ -58,21 +79,22 @@ def test_a_bad_action_is_refused_and_nothing_is_stepped(action, control):
     assert isinstance(caught.value, ValueError)
     assert isinstance(caught.value, BabbleError)
     assert env.state_hash() == before
-    assert env.step([0.1, 0.1])[0] in env.observation_space
+    assert env.step([0.1] * WIDTH[task])[0] in env.observation_space
 
 
 @each_action
-def test_a_bad_action_among_many_steps_none_of_them(action):
-    envs = BabbleReachVectorEnv(3, threads=2)
+@each_task
+def test_a_bad_action_among_many_steps_none_of_them(task, action):
+    envs, action, good = BATCHES[task](3, threads=2), wide(task, action), [0] * WIDTH[task]
     envs.reset(seed=0)
     before = envs.call("state_hash")
-    for actions in ([[0, 0], action, [0, 0]], action):
+    for actions in ([good, action, good], action):
         if actions is not action and isinstance(action, np.ndarray) and action.dtype.kind == "b":
             continue  # Among numbers NumPy makes numbers of them.
         with pytest.raises(ActionError):
             envs.step(actions)
     assert envs.call("state_hash") == before
-    envs.step(np.zeros((3, 2)))
+    envs.step(np.zeros((3, WIDTH[task])))
 
 
 def test_kinds_of_actions_that_are_taken():
@@ -112,9 +134,24 @@ def test_a_step_outside_of_an_episode_needs_a_reset():
     env.step([0, 0])
 
 
-def test_a_batch_needs_resets_too():
-    envs = BabbleReachVectorEnv(2, control="pattern", autoreset_mode="Disabled")
-    action = np.zeros((2, 2), np.float32)
+def test_grasping_needs_a_reset_before_the_first_step_and_after_each_end():
+    env = BabbleGraspEnv(max_episode_steps=2)
+    with pytest.raises(ResetNeeded):
+        env.step([0] * 4)
+    for _ in range(2):
+        env.reset(seed=0)
+        assert not env.step([0] * 4)[3]
+        assert env.step([0] * 4)[3]
+        before = env.state_hash()
+        with pytest.raises(ResetNeeded):
+            env.step([0] * 4)
+        assert env.state_hash() == before
+
+
+@pytest.mark.parametrize(("task", "control"), [("reach", "pattern"), ("grasp", "posture")])
+def test_a_batch_needs_resets_too(task, control):
+    envs = BATCHES[task](2, control=control, autoreset_mode="Disabled", max_episode_steps=1)
+    action = np.zeros(envs.action_space.shape, np.float32)
     with pytest.raises(ResetNeeded):
         envs.step(action)
     envs.reset(seed=0, options={"reset_mask": np.array([True, False])})
@@ -156,34 +193,97 @@ OPTIONS = [
 ]
 
 
-@pytest.mark.parametrize(("options", "error", "named"), OPTIONS, ids=lambda x: str(x)[:40])
-def test_bad_options_are_refused_and_forgotten(options, error, named):
-    env = BabbleReachEnv()
-    env.reset(seed=0, options=REACH)
+GRASP = {"start": (-0.8, 0.5), "object": (0.0, 0.2), "diameter": 0.04, "obstacle": None}
+GRASP_OPTIONS = [
+    ({"target": (0.1, 0.2)}, ConfigError, "target.*start, object, diameter, goal, obstacle"),
+    ("table2", ConfigError, "options"),
+    ({"scenario": 4}, ScenarioError, "scenario"),
+    ({"scenario": {**GRASP, "speed": 2}}, ConfigError, "speed"),
+    ({"start": 3}, ScenarioError, r"start = 3 .*rad"),
+    ({"start": (1, 2, 3)}, ScenarioError, "start.*expected 2"),
+    ({"start": "ab"}, ScenarioError, "start"),
+    ({"start": (NAN, 0)}, ScenarioError, "start: shoulder NaN"),
+    ({"start": (0, INF)}, ScenarioError, "start.*elbow inf"),
+    ({"start": (0, 3.0)}, ScenarioError, "start.*171.9°.*joint ranges"),
+    ({"object": 3}, ScenarioError, r"object = 3 .*\[m\]"),
+    ({"object": (1, 2, 3)}, ScenarioError, "object.*expected 2"),
+    ({"object": (NAN, 0.2)}, ScenarioError, "object.*NaN"),
+    ({"object": (0.3, INF)}, ScenarioError, "object.*inf"),
+    ({"object": (0.3, 0.3)}, ScenarioError, r"object: \[0.3, 0.3\] m.*reach of 0.396 m"),
+    ({"object": (0.0, 0.0)}, ScenarioError, "object: the arm at the start is"),
+    ({**GRASP, "object": (0.1, -0.1)}, ScenarioError, "object.*at least 0.005 m"),
+    ({"diameter": 0}, ScenarioError, r"diameter: 0 m.*\[0.005, 0.2\]"),
+    ({"diameter": -0.04}, ScenarioError, "diameter: -0.04"),
+    ({"diameter": 0.21}, ScenarioError, "diameter: 0.21"),
+    ({"diameter": NAN}, ScenarioError, "diameter: NaN"),
+    ({"diameter": INF}, ScenarioError, "diameter: inf"),
+    ({"diameter": "big"}, ScenarioError, "diameter = 'big'"),
+    ({"diameter": (0.03, 0.04)}, ScenarioError, "diameter"),
+    ({"obstacle": (0.1,)}, ScenarioError, "obstacle"),
+    ({"obstacle": "none"}, ScenarioError, "obstacle"),
+    ({"obstacle": (0.1, NAN)}, ScenarioError, "obstacle.*NaN"),
+    ({"obstacle": (0.1, 0.2, -1)}, ScenarioError, "obstacle.*-1 m.*0.0001"),
+    ({"obstacle": (0.0, 0.0)}, ScenarioError, "obstacle: it is -0.0450 m from the arm"),
+    ({**GRASP, "obstacle": (0.05, -0.05)}, ScenarioError, "obstacle: it is -0.* m from the arm"),
+    ({**GRASP, "obstacle": (0.0, 0.24)}, ScenarioError, "obstacle.*-0.0150 m from the object"),
+    ({"goal": (0.1, 0.2)}, ScenarioError, 'goal.*obs = "goal"'),
+]
+ALL_OPTIONS = [("reach", *row) for row in OPTIONS] + [("grasp", *row) for row in GRASP_OPTIONS]
+GOOD = {"reach": REACH, "grasp": GRASP}
+each_option = pytest.mark.parametrize(
+    ("task", "options", "error", "named"), ALL_OPTIONS, ids=lambda x: str(x)[:40]
+)
+
+
+@each_option
+def test_bad_options_are_refused_and_forgotten(task, options, error, named):
+    env = TASKS[task]()
+    env.reset(seed=0, options=GOOD[task])
     before = env.state_hash()
     with pytest.raises(error, match=named) as caught:
         env.reset(options=options)
     assert isinstance(caught.value, ValueError)
     assert env.state_hash() == before
-    env.step([0, 0])
+    env.step([0] * WIDTH[task])
     env.reset()
-    assert env.scenario == REACH
+    assert env.scenario == GOOD[task]
 
 
-@pytest.mark.parametrize(("options", "error", "named"), OPTIONS, ids=lambda x: str(x)[:40])
-def test_bad_options_for_one_of_many_leave_all_as_they_were(options, error, named):
-    envs = BabbleReachVectorEnv(3, threads=2)
-    envs.reset(seed=0, options=REACH)
+@each_option
+def test_bad_options_for_one_of_many_leave_all_as_they_were(task, options, error, named):
+    envs, good = BATCHES[task](3, threads=2), GOOD[task]
+    envs.reset(seed=0, options=good)
     before = envs.call("state_hash")
     with pytest.raises(error, match=named):
         envs.reset(options=options)
     if isinstance(options, dict) and "scenario" not in options and "speed" not in options:
         with pytest.raises(error, match=named):
-            envs.reset(options={"scenario": [REACH, options, REACH]})
+            envs.reset(options={"scenario": [good, options, good]})
     assert envs.call("state_hash") == before
-    envs.step(np.zeros((3, 2)))
+    envs.step(np.zeros((3, WIDTH[task])))
     envs.reset()
-    assert envs.get_attr("scenario") == (REACH,) * 3
+    assert envs.get_attr("scenario") == (good,) * 3
+
+
+@pytest.mark.parametrize(
+    ("goal", "named"),
+    [
+        (3, "goal = 3"),
+        ((1, 2, 3), "goal.*expected 2"),
+        ((NAN, 0.2), "goal.*NaN"),
+        ((0.3, 0.3), "goal.*reach of 0.396 m"),
+    ],
+    ids=str,
+)
+def test_bad_goals_are_refused_and_forgotten(goal, named):
+    env = BabbleGraspEnv(obs="goal", reward="sparse")
+    env.reset(seed=0, options={**GRASP, "goal": (0.1, 0.2)})
+    before = env.state_hash()
+    with pytest.raises(ScenarioError, match=named):
+        env.reset(options={"goal": goal})
+    assert env.state_hash() == before
+    env.reset()
+    assert env.scenario == {**GRASP, "goal": (0.1, 0.2)}
 
 
 def test_lists_of_a_wrong_length_and_masks_of_a_wrong_kind():
@@ -217,9 +317,10 @@ ARGUMENTS = [
     ({"obs": None}, "obs"),
     ({"control": "wish"}, "wish"),
     ({"control": "Pattern"}, "Pattern"),
+    ({"control": None}, "control"),
     ({"reward": "dense"}, "dense"),
+    ({"reward": 1}, "reward"),
     ({"obs": "goal", "reward": "progress"}, "reward"),
-    ({"obs": "goal", "reward": "sparse", "settled": True}, "settled"),
     ({"render_mode": "ansi"}, "ansi"),
     ({"camera": "left"}, "left"),
     ({"width": 3}, "width"),
@@ -230,17 +331,53 @@ ARGUMENTS = [
     ({"max_episode_steps": 2**40}, "max_episode_steps"),
     ({"max_episode_steps": 1.5}, "max_episode_steps"),
     ({"max_episode_steps": True}, "max_episode_steps"),
-    ({"max_episode_steps": None}, "max_episode_steps"),
+    ({"max_episode_steps": "240"}, "max_episode_steps"),
     ({"obs": "retina", "retina_size": 8}, "retina_size"),
     ({"obs": "retina", "retina_size": "big"}, "retina_size"),
 ]
 
 
-@pytest.mark.parametrize(("arguments", "named"), ARGUMENTS, ids=str)
-@pytest.mark.parametrize("kind", [BabbleReachEnv, BabbleReachVectorEnv])
-def test_arguments_that_are_not_ones_there_are(kind, arguments, named):
+REACH_ARGUMENTS = [
+    ({"max_episode_steps": None}, "max_episode_steps"),
+    ({"obs": "goal", "reward": "sparse", "settled": True}, "settled"),
+    ({"settled": "no"}, "settled = 'no'"),
+]
+GRASP_ARGUMENTS = [
+    ({"control": "pattern"}, "pattern.*delta_posture, posture, torque"),
+    ({"region": "left"}, "left.*palm_side, full"),
+    ({"region": "Full"}, "Full"),
+    ({"region": None}, "region"),
+    ({"diameters": []}, "diameters_m.*at least one"),
+    ({"diameters": 0.03}, "diameters = 0.03"),
+    ({"diameters": ["thin"]}, "diameters"),
+    ({"diameters": [None]}, "diameters"),
+    ({"diameters": [0.03, NAN]}, r"diameters.*nan.*\[0.005, 0.2\]"),
+    ({"diameters": [INF]}, "diameters.*inf"),
+    ({"diameters": [0.03, 0]}, r"diameters_m\[1\]: 0 is out of bounds.*\[0.005, 0.2\]"),
+    ({"diameters": [-0.03]}, "-0.03"),
+    ({"diameters": [0.3]}, r"0.3.*\[0.005, 0.2\]"),
+    ({"any_diameter_between": "no"}, "any_diameter_between = 'no'"),
+    ({"any_diameter_between": None}, "any_diameter_between"),
+    ({"enclosure_reflex": "no"}, "enclosure_reflex = 'no'"),
+    ({"enclosure_reflex": 1}, "enclosure_reflex = 1"),
+]
+ALL_ARGUMENTS = [
+    *((task, *row) for task in TASKS for row in ARGUMENTS),
+    *(("reach", *row) for row in REACH_ARGUMENTS),
+    *(("grasp", *row) for row in GRASP_ARGUMENTS),
+]
+
+
+@pytest.mark.parametrize(("task", "arguments", "named"), ALL_ARGUMENTS, ids=str)
+@pytest.mark.parametrize("kinds", [TASKS, BATCHES], ids=["single", "batch"])
+def test_arguments_that_are_not_ones_there_are(kinds, task, arguments, named):
     with pytest.raises(ConfigError, match=named):
-        kind(**arguments)
+        kinds[task](**arguments)
+
+
+def test_numpys_truth_is_taken_for_true():
+    env = BabbleGraspEnv(enclosure_reflex=np.True_, any_diameter_between=np.False_)
+    assert env.reset(seed=0)[0] in env.observation_space
 
 
 @pytest.mark.parametrize(
@@ -258,21 +395,24 @@ def test_arguments_that_are_not_ones_there_are(kind, arguments, named):
     ],
     ids=str,
 )
-def test_arguments_of_the_batch_that_are_not_ones_there_are(arguments, named):
+@each_task
+def test_arguments_of_the_batch_that_are_not_ones_there_are(task, arguments, named):
     with pytest.raises(ConfigError, match=named):
-        BabbleReachVectorEnv(**arguments)
+        BATCHES[task](**arguments)
 
 
-@pytest.mark.parametrize("control", CONTROLS)
-def test_broken_and_foreign_states_are_refused(control):
-    env = BabbleReachEnv(control=control)
+@pytest.mark.parametrize(("task", "control"), EACH_CONTROL)
+def test_broken_and_foreign_states_are_refused(task, control):
+    kind = TASKS[task]
+    env = kind(control=control)
     env.reset(seed=0)
     before, good = env.state_hash(), env.get_state()
-    foreign = BabbleReachEnv(control=control, body="icub")
+    foreign = kind(control=control, body="icub")
     foreign.reset(seed=0)
     broken = [b"", b"state", good[:4], good[: len(good) // 2], good[:-1], good + b"\0"]
-    broken += [foreign.get_state(), BabbleReachEnv(control=control, reward="sparse").get_state()]
-    for at in range(len(good)):
+    broken += [foreign.get_state(), kind(control=control, reward="sparse").get_state()]
+    # A state of reaching is short enough for each of its bytes.
+    for at in range(0, len(good), max(1, len(good) // 250)):
         altered = bytearray(good)
         altered[at] ^= 1 << (at % 8)
         broken.append(bytes(altered))
@@ -284,13 +424,14 @@ def test_broken_and_foreign_states_are_refused(control):
         with pytest.raises((SnapshotError, TypeError)):
             env.set_state(state)
     assert env.state_hash() == before
-    env.step([0, 0])
+    env.step([0] * WIDTH[task])
 
 
-def test_one_broken_state_among_many_leaves_all_as_they_were():
-    envs = BabbleReachVectorEnv(3)
+@each_task
+def test_one_broken_state_among_many_leaves_all_as_they_were(task):
+    envs = BATCHES[task](3)
     envs.reset(seed=0)
-    other = BabbleReachVectorEnv(3)
+    other = BATCHES[task](3)
     other.reset(seed=1)
     before = envs.call("state_hash")
     for bad in (b"", None):
@@ -299,8 +440,9 @@ def test_one_broken_state_among_many_leaves_all_as_they_were():
         assert envs.call("state_hash") == before
 
 
-def test_goals_of_a_wrong_shape_are_refused():
-    env = BabbleReachEnv(obs="goal", reward="sparse")
+@each_task
+def test_goals_of_a_wrong_shape_are_refused(task):
+    env = TASKS[task](obs="goal", reward="sparse")
     for achieved, desired in (
         (np.zeros(3), np.zeros(3)),
         (np.zeros((4, 2)), np.zeros((3, 2))),
@@ -312,9 +454,10 @@ def test_goals_of_a_wrong_shape_are_refused():
             env.compute_reward(achieved, desired, {})
 
 
-def test_a_missing_extra_is_named(monkeypatch):
+@each_task
+def test_a_missing_extra_is_named(task, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "pygame", None)
-    env = BabbleReachEnv(render_mode="human")
+    env = TASKS[task](render_mode="human")
     with pytest.raises(MissingExtraError, match=r"gym-babble\[human\]") as caught:
         env.reset(seed=0)
     assert isinstance(caught.value, ImportError)

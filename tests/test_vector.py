@@ -12,14 +12,25 @@ import warnings
 import gymnasium
 import numpy as np
 import pytest
-from comparing import IDS, assert_same, drawn_actions, info_of, one_of
+from comparing import (
+    ALL_IDS,
+    BATCHES,
+    GRASP_IDS,
+    IDS,
+    TASKS,
+    assert_same,
+    drawn_actions,
+    info_of,
+    one_of,
+)
+from grasping import OPEN, grasp, posture, to_object
 from gymnasium.vector import AutoresetMode, SyncVectorEnv, VectorEnv
 from gymnasium.wrappers import vector as wrappers
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gym_babble import scenarios
-from gym_babble.envs import BabbleReachEnv, BabbleReachVectorEnv
+from gym_babble.envs import BabbleGraspEnv, BabbleGraspVectorEnv, BabbleReachVectorEnv
 
 MODES = tuple(AutoresetMode)
 FORMS = (
@@ -29,11 +40,22 @@ FORMS = (
     {"obs": "retina", "retina_size": 36, "max_episode_steps": 9},
     {"obs": "senses", "control": "pattern", "reward": "sparse"},
 )
-names = pytest.mark.parametrize("form", FORMS, ids=lambda form: "-".join(map(str, form.values())))
+GRASP_FORMS = (
+    *FORMS[:4],
+    {"obs": "flat", "control": "posture", "enclosure_reflex": True},
+    {"obs": "senses", "region": "full", "any_diameter_between": True, "max_episode_steps": 90},
+)
+ALL_FORMS = [("reach", form) for form in FORMS] + [("grasp", form) for form in GRASP_FORMS]
+names = pytest.mark.parametrize(
+    ("task", "form"),
+    ALL_FORMS,
+    ids=lambda x: x if isinstance(x, str) else "-".join(map(str, x.values())),
+)
+each_task = pytest.mark.parametrize("task", TASKS)
 
 
-def make_sync(n, mode, form):
-    return SyncVectorEnv([lambda: BabbleReachEnv(**form)] * n, autoreset_mode=mode)
+def make_sync(task, n, mode, form):
+    return SyncVectorEnv([lambda: TASKS[task](**form)] * n, autoreset_mode=mode)
 
 
 def without_resets(mode):
@@ -53,9 +75,9 @@ def vector_rollout(envs, actions, options=None):
 
 @names
 @pytest.mark.parametrize("mode", MODES, ids=lambda mode: mode.name)
-def test_the_batch_equals_gymnasiums_batch_of_singles(mode, form):
-    native = BabbleReachVectorEnv(4, autoreset_mode=mode, **form)
-    sync = make_sync(4, mode, form)
+def test_the_batch_equals_gymnasiums_batch_of_singles(mode, task, form):
+    native = BATCHES[task](4, autoreset_mode=mode, **form)
+    sync = make_sync(task, 4, mode, form)
     assert native.observation_space == sync.observation_space
     assert native.action_space == sync.action_space
     assert native.single_observation_space == sync.single_observation_space
@@ -66,7 +88,7 @@ def test_the_batch_equals_gymnasiums_batch_of_singles(mode, form):
     assert ends >= 4
 
 
-@pytest.mark.parametrize("env_id", IDS)
+@pytest.mark.parametrize("env_id", ALL_IDS)
 def test_environment_i_is_the_single_one_seeded_s_plus_i(env_id):
     envs = gymnasium.make_vec(env_id, num_envs=5)
     actions = drawn_actions(envs.action_space, 600, 0)
@@ -89,10 +111,11 @@ def test_environment_i_is_the_single_one_seeded_s_plus_i(env_id):
         assert episodes >= 2
 
 
-def test_threads_do_not_change_a_bit():
+@pytest.mark.parametrize(("task", "n"), [("reach", 130), ("grasp", 18)])
+def test_threads_do_not_change_a_bit(task, n):
     seen = {}
     for threads in (1, 2, 8):
-        envs = BabbleReachVectorEnv(130, threads=threads, autoreset_mode="SameStep")
+        envs = BATCHES[task](n, threads=threads, autoreset_mode="SameStep", max_episode_steps=40)
         actions = drawn_actions(envs.action_space, 60, 0)
         seen[threads] = [envs.reset(seed=1)] + [envs.step(action) for action in actions]
         assert envs.threads == threads
@@ -100,16 +123,25 @@ def test_threads_do_not_change_a_bit():
     assert_same(seen[1], seen[8])
 
 
+@pytest.mark.parametrize(("task", "n"), [("reach", 64), ("grasp", 4)])
+def test_a_thread_is_woken_for_so_many_environments_and_no_more_than_processors(
+    task, n, monkeypatch
+):
+    monkeypatch.setattr("os.sched_getaffinity", lambda _: set(range(3)), raising=False)
+    assert [BATCHES[task](k).threads for k in (1, 2 * n - 1, 2 * n, 9 * n)] == [1, 1, 2, 3]
+
+
 @settings(max_examples=15, deadline=None)
 @given(
+    task=st.sampled_from(sorted(TASKS)),
     mode=st.sampled_from(MODES),
     moment=st.integers(0, 30),
     n=st.integers(1, 5),
     how=st.sampled_from(["state", "pickle", "deepcopy"]),
 )
-def test_a_batch_continues_from_its_states_and_copies(mode, moment, n, how):
+def test_a_batch_continues_from_its_states_and_copies(task, *, mode, moment, n, how):
     def make():
-        return BabbleReachVectorEnv(n, autoreset_mode=mode, max_episode_steps=11)
+        return BATCHES[task](n, autoreset_mode=mode, max_episode_steps=11)
 
     def play(envs, actions):
         seen = []
@@ -134,8 +166,9 @@ def test_a_batch_continues_from_its_states_and_copies(mode, moment, n, how):
     assert_same(play(envs, actions[moment:]), play(other, actions[moment:]))
 
 
-def test_unseeded_resets_reproduce_after_a_seed():
-    envs = BabbleReachVectorEnv(3)
+@each_task
+def test_unseeded_resets_reproduce_after_a_seed(task):
+    envs = BATCHES[task](3)
     seen = []
     for seed in (4, 5, 4):
         envs.reset(seed=seed)
@@ -146,12 +179,14 @@ def test_unseeded_resets_reproduce_after_a_seed():
     assert_same(one_of(envs.reset()[0], 0), one_of(seen[0][0], 0))
 
 
-def test_each_autoreset_draws_a_new_case():
-    envs = BabbleReachVectorEnv(2, control="pattern", autoreset_mode="SameStep")
+@each_task
+def test_each_autoreset_draws_a_new_case(task):
+    control = {"reach": "pattern", "grasp": "torque"}[task]
+    envs = BATCHES[task](2, control=control, autoreset_mode="SameStep", max_episode_steps=1)
     envs.reset(seed=0)
     actions = drawn_actions(envs.action_space, 20, 0)
-    targets = {envs.step(action)[0]["eye"].tobytes() for action in actions}
-    assert len(targets) == 20
+    places = {envs.step(action)[0]["eye"].tobytes() for action in actions}
+    assert len(places) == 20
 
 
 def test_options_hold_for_autoresets_until_others_are_named():
@@ -176,8 +211,61 @@ def test_options_hold_for_autoresets_until_others_are_named():
     assert not set(targets()) & set(wanted)
 
 
-def test_what_was_returned_never_changes():
-    envs = BabbleReachVectorEnv(3, max_episode_steps=5, autoreset_mode="SameStep")
+def test_options_of_grasping_hold_for_autoresets_until_others_are_named():
+    envs = BabbleGraspVectorEnv(2, max_episode_steps=3, autoreset_mode="SameStep")
+    objects = [(0.0, 0.2), (-0.1, 0.2)]
+
+    def placed():
+        return [case["object"] for case in envs.get_attr("scenario")]
+
+    envs.reset(seed=0, options={"scenario": [{"object": place} for place in objects]})
+    starts = set()
+    for action in drawn_actions(envs.action_space, 12, 0):
+        assert placed() == objects
+        envs.step(action)
+        starts |= {case["start"] for case in envs.get_attr("scenario")}
+    assert len(starts) == 10
+    envs.reset(options={"object": objects[1], "reset_mask": np.array([True, False])})
+    assert placed() == [objects[1]] * 2
+    envs.reset(options={"reset_mask": np.array([True, True])})
+    assert placed() == [objects[1]] * 2
+    envs.reset(options={})
+    assert not set(placed()) & set(objects)
+
+
+def test_each_autoreset_mode_shows_the_end_of_a_grasp():
+    # A success in one environment of two, and nothing of it in the other.
+    shown = {}
+    case = {"start": (-0.7, 0.9), "object": (0.0, 0.2), "diameter": 0.06}
+    single = BabbleGraspEnv(control="posture")
+    played = grasp(single, seed=0, options=case)
+    actions = [posture(single, (-1.2, 0.5), OPEN)] * len(played)
+    single.reset(options=case)
+    hand = [to_object(single, result[-1]) for result in played[:-1]]
+    for mode in MODES:
+        envs = BabbleGraspVectorEnv(2, control="posture", autoreset_mode=mode)
+        envs.reset(seed=0, options=case)
+        for pair in zip(hand, actions, strict=False):
+            last = envs.step(np.stack(pair))
+        assert last[2].tolist() == [True, False]
+        assert last[1][0] == played[-1][1]
+        shown[mode] = last
+    for mode in (AutoresetMode.NEXT_STEP, AutoresetMode.DISABLED):
+        assert_same(one_of(shown[mode][0], 0), played[-1][0])
+        assert_same(info_of(shown[mode][4], 0), played[-1][4])
+    observation, _, _, _, infos = shown[AutoresetMode.SAME_STEP]
+    assert_same(infos["final_obs"][0], played[-1][0])
+    assert_same(info_of(infos["final_info"], 0), played[-1][4])
+    assert infos["final_obs"][1] is None
+    assert infos["_final_obs"].tolist() == [True, False]
+    assert not infos["held"].any()
+    assert infos["outcome"][0] == "running"
+    assert_same(one_of(observation, 0), played[0][0])
+
+
+@each_task
+def test_what_was_returned_never_changes(task):
+    envs = BATCHES[task](3, max_episode_steps=5, autoreset_mode="SameStep")
     actions = drawn_actions(envs.action_space, 12, 0)
     kept = [envs.reset(seed=0)] + [envs.step(action) for action in actions]
     frozen = copy.deepcopy(kept)
@@ -187,9 +275,11 @@ def test_what_was_returned_never_changes():
     assert_same(frozen, kept)
 
 
-def test_attributes_and_methods_of_each_environment():
-    envs = BabbleReachVectorEnv(3, render_mode="rgb_array", width=32, height=24)
-    sync = SyncVectorEnv([lambda: BabbleReachEnv(render_mode="rgb_array", width=32, height=24)] * 3)
+@each_task
+def test_attributes_and_methods_of_each_environment(task):
+    form = {"render_mode": "rgb_array", "width": 32, "height": 24}
+    envs = BATCHES[task](3, **form)
+    sync = make_sync(task, 3, AutoresetMode.NEXT_STEP, form)
     envs.reset(seed=2)
     sync.reset(seed=2)
     for name in ("scenario", "trajectory", "render_mode", "action_space", "observation_space"):
@@ -215,32 +305,35 @@ def test_attributes_and_methods_of_each_environment():
     assert envs.closed
 
 
-def test_the_goals_reward_is_there_as_in_single_environments():
-    envs = gymnasium.make_vec(IDS[2], num_envs=3)
-    sync = gymnasium.make_vec(IDS[2], num_envs=3, vectorization_mode="sync")
+@pytest.mark.parametrize("env_id", [IDS[2], GRASP_IDS[2]])
+def test_the_goals_reward_is_there_as_in_single_environments(env_id):
+    envs = gymnasium.make_vec(env_id, num_envs=3)
+    sync = gymnasium.make_vec(env_id, num_envs=3, vectorization_mode="sync")
     goals = np.zeros(2), np.zeros((4, 2))
     assert_same(envs.call("compute_reward", *goals, {}), sync.call("compute_reward", *goals, {}))
 
 
-def test_frames_of_each_environment_since_the_last_call():
-    envs = BabbleReachVectorEnv(2, render_mode="rgb_array_list", width=32, height=32)
+@each_task
+def test_frames_of_each_environment_since_the_last_call(task):
+    envs = BATCHES[task](2, render_mode="rgb_array_list", width=32, height=32)
     envs.reset(seed=0)
     assert [len(frames) for frames in envs.render()] == [1, 1]
     for _ in range(4):
-        envs.step(np.zeros((2, 2), np.float32))
+        envs.step(np.zeros(envs.action_space.shape, np.float32))
     assert [len(frames) for frames in envs.render()] == [4, 4]
     assert [len(frames) for frames in envs.render()] == [0, 0]
 
 
 @pytest.mark.parametrize("mode", [None, "sync", "async", "vector_entry_point"])
-def test_make_vec_makes_it_in_every_mode(mode):
+@each_task
+def test_make_vec_makes_it_in_every_mode(task, mode):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        envs = gymnasium.make_vec(IDS[0], num_envs=3, vectorization_mode=mode)
-    assert isinstance(envs.unwrapped, BabbleReachVectorEnv) == (mode not in ("sync", "async"))
+        envs = gymnasium.make_vec(f"Babble{task.title()}-v0", num_envs=3, vectorization_mode=mode)
+    assert isinstance(envs.unwrapped, BATCHES[task]) == (mode not in ("sync", "async"))
     assert isinstance(envs, VectorEnv)
     assert envs.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
-    single = BabbleReachVectorEnv(3)
+    single = BATCHES[task](3)
     assert_same(envs.reset(seed=1), single.reset(seed=1))
     for action in drawn_actions(single.action_space, 30, 0):
         assert_same(envs.step(action), single.step(action))
@@ -248,15 +341,17 @@ def test_make_vec_makes_it_in_every_mode(mode):
 
 
 @pytest.mark.parametrize("context", ["fork", "spawn"])
-@pytest.mark.parametrize("shared_memory", [True, False])
-def test_gymnasiums_processes_work(context, shared_memory):
+@pytest.mark.parametrize(
+    ("env_id", "shared_memory"), [(IDS[2], True), (IDS[2], False), (GRASP_IDS[2], True)]
+)
+def test_gymnasiums_processes_work(context, env_id, shared_memory):
     envs = gymnasium.make_vec(
-        IDS[2],
+        env_id,
         num_envs=2,
         vectorization_mode="async",
         vector_kwargs={"context": context, "shared_memory": shared_memory},
     )
-    native = gymnasium.make_vec(IDS[2], num_envs=2)
+    native = gymnasium.make_vec(env_id, num_envs=2)
     assert_same(native.reset(seed=1), envs.reset(seed=1))
     for action in drawn_actions(native.action_space, 5, 0):
         assert_same(native.step(action), envs.step(action))
@@ -264,11 +359,13 @@ def test_gymnasiums_processes_work(context, shared_memory):
     envs.close()
 
 
-def test_make_vec_sets_the_time_limit_itself():
-    envs = gymnasium.make_vec(IDS[0], num_envs=2, max_episode_steps=3)
+@pytest.mark.parametrize("env_id", [IDS[0], GRASP_IDS[0]])
+def test_make_vec_sets_the_time_limit_itself(env_id):
+    envs = gymnasium.make_vec(env_id, num_envs=2, max_episode_steps=3)
     envs.reset(seed=0)
+    still = np.zeros(envs.action_space.shape, np.float32)
     for _ in range(3):
-        observation, _, _, truncated, infos = envs.step(np.zeros((2, 2), np.float32))
+        observation, _, _, truncated, infos = envs.step(still)
     assert truncated.all()
     assert list(infos["outcome"]) == ["timeout"] * 2
     assert (observation["time"] == 1).all()
@@ -278,8 +375,9 @@ def step_in_child(envs, action, queue):
     queue.put([envs.step(action), envs.step(action)])
 
 
-def test_a_forked_child_steps_a_batch_whose_threads_ran_in_its_parent():
-    envs = BabbleReachVectorEnv(64, threads=2)
+@pytest.mark.parametrize(("task", "n"), [("reach", 64), ("grasp", 4)])
+def test_a_forked_child_steps_a_batch_whose_threads_ran_in_its_parent(task, n):
+    envs = BATCHES[task](n, threads=2)
     envs.reset(seed=0)
     action = drawn_actions(envs.action_space, 1, 0)[0]
     envs.step(action)
@@ -323,11 +421,12 @@ def test_other_python_threads_run_while_the_batch_steps():
     assert len(within) >= 3, (len(moments), ended - started)
 
 
-def test_gymnasiums_vector_wrappers_work():
-    envs = gymnasium.make_vec(IDS[0], num_envs=3, max_episode_steps=20)
+@pytest.mark.parametrize(("env_id", "size"), [(IDS[0], 11), (GRASP_IDS[0], 455)])
+def test_gymnasiums_vector_wrappers_work(env_id, size):
+    envs = gymnasium.make_vec(env_id, num_envs=3, max_episode_steps=20)
     envs = wrappers.RecordEpisodeStatistics(envs)
     envs = wrappers.NormalizeReward(wrappers.FlattenObservation(envs))
-    assert envs.single_observation_space.shape == (11,)
+    assert envs.single_observation_space.shape == (size,)
     observation, _ = envs.reset(seed=0)
     episodes = 0
     for action in drawn_actions(envs.action_space, 60, 0):

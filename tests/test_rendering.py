@@ -5,30 +5,37 @@ from __future__ import annotations
 import gymnasium
 import numpy as np
 import pytest
-from comparing import IDS
+from comparing import BATCHES, GRASP_IDS, IDS, TASKS
+from grasping import to_object
 from gymnasium.error import ResetNeeded
 from gymnasium.utils.save_video import save_video
 from gymnasium.wrappers import RecordVideo
 
-from gym_babble.envs import BabbleReachEnv, BabbleReachVectorEnv
+from gym_babble.envs import BabbleGraspEnv
+
+each_task = pytest.mark.parametrize("task", TASKS)
 
 SMALL = {"width": 96, "height": 64}
 FREE = {"start": (0.25, 0.18), "target": (0.05, 0.33), "obstacle": None}
+GRASP = {"start": (-0.7, 0.9), "object": (0.0, 0.2), "diameter": 0.06, "obstacle": None}
+CASES = {"reach": FREE, "grasp": GRASP}
 
 
 def reds(frame):
-    """How many pixels are the target's red."""
+    """How many pixels are the target's or object's red."""
     red, green, blue = frame.astype(int).transpose(2, 0, 1)
     return ((red > 110) & (green < red / 2) & (blue < red / 2)).sum()
 
 
 @pytest.mark.parametrize("camera", ["third_person", "eye"])
-def test_a_frame_has_the_size_asked_for_and_shows_the_arm_moving(camera):
-    env = gymnasium.make(IDS[0], render_mode="rgb_array", camera=camera, **SMALL)
-    env.reset(seed=0, options=FREE)
+@each_task
+def test_a_frame_has_the_size_asked_for_and_shows_the_arm_moving(task, camera):
+    env_id = f"Babble{task.title()}-v0"
+    env = gymnasium.make(env_id, render_mode="rgb_array", camera=camera, **SMALL)
+    env.reset(seed=0, options=CASES[task])
     frames = [env.render()]
     for _ in range(10):
-        env.step(np.array([1, 1], np.float32))
+        env.step(np.ones(env.action_space.shape, np.float32))
         frames.append(env.render())
     for frame in frames:
         assert frame.shape == (64, 96, 3)
@@ -38,27 +45,54 @@ def test_a_frame_has_the_size_asked_for_and_shows_the_arm_moving(camera):
     assert len({frame.tobytes() for frame in frames}) > 5
 
 
-def test_the_cameras_differ_and_the_default_size_is_480():
+@each_task
+def test_the_cameras_differ_and_the_default_size_is_480(task):
     frames = []
     for camera in ("third_person", "eye"):
-        env = BabbleReachEnv(render_mode="rgb_array", camera=camera)
+        env = TASKS[task](render_mode="rgb_array", camera=camera)
         env.reset(seed=0)
         frames.append(env.render())
         assert frames[-1].shape == (480, 480, 3)
     assert (frames[0] != frames[1]).any(axis=2).mean() > 0.2
 
 
-def test_the_obstacle_is_seen():
-    env = BabbleReachEnv(render_mode="rgb_array", **SMALL)
-    env.reset(seed=0, options={**FREE, "obstacle": (0.16, 0.27)})
+@pytest.mark.parametrize(("task", "place"), [("reach", (0.16, 0.27)), ("grasp", (-0.2, 0.2))])
+def test_the_obstacle_is_seen(task, place):
+    env = TASKS[task](render_mode="rgb_array", **SMALL)
+    env.reset(seed=0, options={**CASES[task], "obstacle": place})
     with_it = env.render()
-    env.reset(seed=0, options=FREE)
+    env.reset(seed=0, options=CASES[task])
     assert (with_it != env.render()).any(axis=2).sum() > 30
 
 
+@pytest.mark.parametrize("camera", ["third_person", "eye"])
+def test_a_larger_object_has_more_red_and_the_hand_can_be_seen_to_close(camera):
+    env = BabbleGraspEnv(render_mode="rgb_array", camera=camera, width=240, height=240)
+    red = {}
+    for diameter in (0.024, 0.06):
+        env.reset(seed=0, options={**GRASP, "diameter": diameter})
+        red[diameter] = reds(env.render())
+    assert red[0.06] > 3 * red[0.024] > 0
+    open_hand = env.render()
+    for _ in range(20):
+        env.step([0, 0, 1, 1])
+    assert (env.render() != open_hand).any(axis=2).sum() > 30
+
+
+def test_arm_and_hand_can_hide_the_object():
+    # Unlike reaching's target, which shows through.
+    env = BabbleGraspEnv(render_mode="rgb_array", camera="eye", width=400, height=400)
+    red = []
+    for start in ((-1.2, 0.2), (0.5, 1.0)):
+        env.reset(options={"start": start, "object": (0.16, 0.34), "diameter": 0.024})
+        red.append(reds(env.render()))
+    assert 0 < red[1] < 0.8 * red[0]
+
+
 @pytest.mark.parametrize(("size", "tint"), [(36, 1), (84, 20), (200, 60)])
-def test_the_eye_has_the_target_in_its_middle(size, tint):
-    env = BabbleReachEnv(obs="retina", retina_size=size)
+@each_task
+def test_the_eye_has_the_target_in_its_middle(task, size, tint):
+    env = TASKS[task](obs="retina", retina_size=size)
     for seed in range(30):
         retina = env.reset(seed=seed)[0]["retina"].astype(int)
         redness = retina[..., 0] - retina[..., 1:].max(axis=2)
@@ -81,71 +115,98 @@ def test_pattern_control_shows_the_movement_in_50_ms_frames():
     assert 2 <= len(env.render()) <= 225
 
 
-def test_a_list_has_the_frames_since_the_last_call():
-    env = BabbleReachEnv(render_mode="rgb_array_list", **SMALL)
-    env.reset(seed=0, options=FREE)
+@each_task
+def test_a_list_has_the_frames_since_the_last_call(task):
+    env = TASKS[task](render_mode="rgb_array_list", **SMALL)
+    still = np.zeros(env.action_space.shape)
+    env.reset(seed=0, options=CASES[task])
     for _ in range(3):
-        env.step([0, 0])
+        env.step(still)
     assert len(env.render()) == 4
-    env.step([0, 0])
+    env.step(still)
     assert len(env.render()) == 1
     env.reset()
     assert len(env.render()) == 1
     assert env.trajectory.shape == (1, 2)
-    assert env.trajectory[0] == pytest.approx(FREE["start"])
+    assert task == "grasp" or env.trajectory[0] == pytest.approx(FREE["start"])
+
+
+def test_each_frame_of_a_list_is_the_picture_of_its_moment():
+    # Catches the present hand or object in pictures of the past.
+    listed, pictured = (
+        BabbleGraspEnv(render_mode=mode, control="posture", **SMALL)
+        for mode in ("rgb_array_list", "rgb_array")
+    )
+    info = pictured.reset(seed=0, options=GRASP)[1]
+    listed.reset(seed=0, options=GRASP)
+    shown, ended = [pictured.render()], False
+    while not ended:
+        action = to_object(pictured, info)
+        _, _, ended, _, info = pictured.step(action)
+        listed.step(action)
+        shown.append(pictured.render())
+    frames = listed.render()
+    assert len(frames) == len(shown) == len(listed.trajectory)
+    assert all((a == b).all() for a, b in zip(frames, shown, strict=True))
 
 
 @pytest.mark.parametrize("mode", ["rgb_array", "rgb_array_list", "human"])
-def test_rendering_needs_a_reset_first(mode):
+@each_task
+def test_rendering_needs_a_reset_first(task, mode):
     with pytest.raises(ResetNeeded):
-        BabbleReachEnv(render_mode=mode).render()
+        TASKS[task](render_mode=mode).render()
     if mode != "human":
         with pytest.raises(ResetNeeded):
-            BabbleReachVectorEnv(2, render_mode=mode).render()
+            BATCHES[task](2, render_mode=mode).render()
 
 
-def test_rendering_without_a_mode_says_so():
-    env = BabbleReachEnv()
+@each_task
+def test_rendering_without_a_mode_says_so(task):
+    env = TASKS[task]()
     env.reset(seed=0)
     with pytest.warns(UserWarning, match="render_mode"):
         assert env.render() is None
-    envs = BabbleReachVectorEnv(2)
+    envs = BATCHES[task](2)
     envs.reset(seed=0)
     with pytest.warns(UserWarning, match="render_mode"):
         assert envs.render() == (None, None)
 
 
-def test_frames_per_second_are_the_control_periods():
-    assert BabbleReachEnv.metadata["render_fps"] == 20
-    assert gymnasium.make(IDS[0]).metadata["render_fps"] == 20
-    assert BabbleReachEnv.metadata["render_modes"] == ["human", "rgb_array", "rgb_array_list"]
+@each_task
+def test_frames_per_second_are_the_control_periods(task):
+    assert TASKS[task].metadata["render_fps"] == 20
+    assert gymnasium.make(f"Babble{task.title()}-v0").metadata["render_fps"] == 20
+    assert TASKS[task].metadata["render_modes"] == ["human", "rgb_array", "rgb_array_list"]
 
 
-def test_rendering_changes_no_episode():
+@each_task
+def test_rendering_changes_no_episode(task):
     hashes = []
+    action = [0.5, -0.5] if task == "reach" else [0.5, -0.5, 1, 1]
     for mode in ("rgb_array", "rgb_array_list"):
-        env = BabbleReachEnv(render_mode=mode, **SMALL)
+        env = TASKS[task](render_mode=mode, **SMALL)
         env.reset(seed=3)
         for _ in range(5):
-            env.step([0.5, -0.5])
+            env.step(action)
             if mode == "rgb_array":
                 env.render()
         hashes.append(env.state_hash())
     assert hashes[0] == hashes[1]
-    silent = BabbleReachEnv()
+    silent = TASKS[task]()
     silent.reset(seed=3)
     for _ in range(5):
-        seen = silent.step([0.5, -0.5])
-    assert env.step([0, 0])[1] == silent.step([0, 0])[1]
+        seen = silent.step(action)
+    assert env.step(action)[1] == silent.step(action)[1]
     assert seen is not None
 
 
-def test_a_window_shows_the_episode(monkeypatch):
+@pytest.mark.parametrize("env_id", [IDS[0], GRASP_IDS[0]])
+def test_a_window_shows_the_episode(env_id, monkeypatch):
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
-    env = gymnasium.make(IDS[0], render_mode="human", **SMALL)
+    env = gymnasium.make(env_id, render_mode="human", **SMALL)
     env.reset(seed=0)
     for _ in range(3):
-        env.step(np.zeros(2, np.float32))
+        env.step(np.zeros(env.action_space.shape, np.float32))
     assert env.render() is None
     env.close()
     env.close()
@@ -160,13 +221,14 @@ def clip_of(video):
         return clip.fps, clip.size, clip.duration
 
 
-def test_videos_of_the_second_episode_too(tmp_path):
-    env = gymnasium.make(IDS[0], render_mode="rgb_array", **SMALL)
+@pytest.mark.parametrize("env_id", [IDS[0], GRASP_IDS[0]])
+def test_videos_of_the_second_episode_too(env_id, tmp_path):
+    env = gymnasium.make(env_id, render_mode="rgb_array", **SMALL)
     env = RecordVideo(env, str(tmp_path / "new"), episode_trigger=lambda _: True)
     for episode in range(2):
         env.reset(seed=episode)
         for _ in range(12):
-            env.step(np.zeros(2, np.float32))
+            env.step(np.zeros(env.action_space.shape, np.float32))
     env.close()
     videos = sorted(tmp_path.glob("new/*.mp4"))
     assert len(videos) == 2

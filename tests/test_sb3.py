@@ -1,6 +1,5 @@
 """The batch behind stable-baselines3's VecEnv, and what stable-baselines3 asks of environments."""
 
-import itertools
 import subprocess
 import sys
 
@@ -8,6 +7,8 @@ import gymnasium as gym
 import numpy as np
 import pytest
 import torch
+from comparing import ALL_CHOICES, GRASP_IDS, TASKS
+from grasping import to_object
 from gymnasium.error import ResetNeeded
 from stable_baselines3 import PPO, SAC, HerReplayBuffer
 from stable_baselines3.common.env_checker import check_env
@@ -21,23 +22,12 @@ from stable_baselines3.common.vec_env import (
 )
 
 from gym_babble import HebbBabbling, scenarios
-from gym_babble.envs import BabbleReachEnv
 from gym_babble.errors import ActionError, ConfigError
 from gym_babble.registration import ENVIRONMENTS
 from gym_babble.sb3 import BabbleVecEnv
 
 # Two threads of PyTorch on a busy machine wait for each other: 20 s for what takes 1.
 torch.set_num_threads(1)
-
-COMBINATIONS = [
-    (obs, control, reward)
-    for obs, control, reward in itertools.product(
-        ("senses", "flat", "goal", "retina"),
-        ("delta_posture", "posture", "torque", "pattern"),
-        ("progress", "sparse"),
-    )
-    if obs != "goal" or reward == "sparse"
-]
 
 
 def made(env_id, **kwargs):
@@ -52,9 +42,13 @@ def test_checker_passes_every_id(row):
     check_env(made(row.id))
 
 
-@pytest.mark.parametrize(("obs", "control", "reward"), COMBINATIONS)
-def test_checker_passes_every_combination(obs, control, reward):
-    check_env(made("BabbleReach-v0", obs=obs, control=control, reward=reward))
+@pytest.mark.parametrize(
+    ("env_id", "choices"),
+    ALL_CHOICES,
+    ids=lambda x: x if isinstance(x, str) else "-".join(x.values()),
+)
+def test_checker_passes_every_combination(env_id, choices):
+    check_env(made(env_id, **choices))
 
 
 def same(a, b):
@@ -75,7 +69,8 @@ def without_clock(info):
 def dummy(env_id, n, **kwargs):
     """The same environments one by one, as stable-baselines3 makes them."""
     kwargs = {**gym.spec(env_id).kwargs, **kwargs}
-    return DummyVecEnv([lambda: Monitor(BabbleReachEnv(**kwargs))] * n)
+    kind = TASKS["grasp" if env_id in GRASP_IDS else "reach"]
+    return DummyVecEnv([lambda: Monitor(kind(**kwargs))] * n)
 
 
 @pytest.mark.parametrize(
@@ -86,6 +81,10 @@ def dummy(env_id, n, **kwargs):
         ("BabbleReach-v0", {"obs": "retina", "retina_size": 36, "max_episode_steps": 5}, 20),
         ("BabbleReachGoal-v0", {"max_episode_steps": 60}, 200),
         ("BabbleReachPattern-v0", {}, 20),
+        ("BabbleGrasp-v0", {"max_episode_steps": 60}, 150),
+        ("BabbleGrasp-v0", {"obs": "flat", "control": "torque", "region": "full"}, 501),
+        ("BabbleGrasp-v0", {"obs": "retina", "retina_size": 36, "max_episode_steps": 5}, 20),
+        ("BabbleGraspGoal-v0", {"max_episode_steps": 60}, 130),
     ],
 )
 def test_equals_dummy_vec_env(env_id, kwargs, steps):
@@ -99,7 +98,7 @@ def test_equals_dummy_vec_env(env_id, kwargs, steps):
     random = np.random.default_rng(0)
     ends = 0
     for _ in range(steps):
-        actions = random.uniform(-1.0, 1.0, (4, 2)).astype(np.float32)
+        actions = random.uniform(-1.0, 1.0, (4, *batch.action_space.shape)).astype(np.float32)
         ours, theirs = batch.step(actions), singles.step(actions)
         assert all(same(a, b) for a, b in zip(ours[:3], theirs[:3], strict=True))
         assert batch.reset_infos == singles.reset_infos
@@ -137,6 +136,45 @@ def test_options_go_to_each_environment_and_hold():
     ]
     env.set_options({"scenario": None})
     assert not np.array_equal(env.reset()["arm"], starts)
+
+
+def test_options_of_grasping_go_to_each_environment_and_hold():
+    env = BabbleVecEnv("BabbleGraspSparse-v0", 2, max_episode_steps=2)
+    cases = [{"object": (0.0, 0.2), "diameter": 0.03}, {"start": (-0.8, 0.5)}]
+    env.set_options(cases)
+    env.reset()
+    for _ in range(5):
+        for case, played in zip(cases, env.get_attr("scenario"), strict=True):
+            assert case.items() <= played.items()
+        env.step(np.zeros((2, 4), np.float32))
+
+
+class OneOf:
+    """Environment i of a batch, as far as the hand needs it."""
+
+    def __init__(self, env, i):
+        self.unwrapped = self
+        self.choices, self.scenario = env.get_attr("choices", i)[0], env.get_attr("scenario", i)[0]
+
+
+def test_a_grasp_succeeds_in_the_batch_and_its_facts_are_told():
+    env = BabbleVecEnv("BabbleGrasp-v0", 3, control="posture")
+    env.seed(0)
+    env.reset()
+    infos, ends = env.reset_infos, {}
+    for _ in range(160):
+        hands = [to_object(OneOf(env, i), infos[i]) for i in range(3)]
+        _, _, dones, infos = env.step(np.stack(hands))
+        for i in np.flatnonzero(dones):
+            ends.setdefault(int(i), infos[i])
+        infos = [env.reset_infos[i] if dones[i] else infos[i] for i in range(3)]
+    assert len(ends) == 3
+    for info in ends.values():
+        assert info["is_success"]
+        assert info["held"]
+        assert info["outcome"] == "success"
+        assert info["episode"]["l"] < 160
+        assert not info["TimeLimit.truncated"]
 
 
 def test_usable_after_an_unknown_option():
@@ -182,13 +220,15 @@ def test_attributes_and_methods():
 
 
 @pytest.mark.parametrize("make", [BabbleVecEnv, dummy])
-def test_goal_rewards_can_be_computed_anew(make):
-    env = make("BabbleReachGoal-v0", 2)
+@pytest.mark.parametrize("env_id", ["BabbleReachGoal-v0", "BabbleGraspGoal-v0"])
+def test_goal_rewards_can_be_computed_anew(make, env_id):
+    env = make(env_id, 2)
     env.seed(3)
     env.reset()
     random = np.random.default_rng(0)
     for _ in range(50):
-        observation, rewards, dones, _ = env.step(random.uniform(-1, 1, (2, 2)).astype(np.float32))
+        actions = random.uniform(-1, 1, (2, *env.action_space.shape)).astype(np.float32)
+        observation, rewards, dones, _ = env.step(actions)
         if not dones.any():
             goals = (observation["achieved_goal"], observation["desired_goal"])
             (computed,) = env.env_method("compute_reward", *goals, [{}] * 2, indices=[0])
@@ -220,6 +260,14 @@ def test_ppo_learns_saves_and_loads(tmp_path):
     loaded.learn(512)
 
 
+def test_ppo_learns_on_grasping():
+    env = BabbleVecEnv("BabbleGrasp-v0", 4, max_episode_steps=40)
+    model = PPO("MultiInputPolicy", env, n_steps=64, batch_size=128, n_epochs=1, device="cpu")
+    model.learn(512)
+    assert len(model.ep_info_buffer) >= 8
+    assert len(model.ep_success_buffer) == len(model.ep_info_buffer)
+
+
 def test_ppo_is_the_same_on_the_batch_and_on_singles():
     def trained(env):
         env.seed(5)
@@ -231,9 +279,16 @@ def test_ppo_is_the_same_on_the_batch_and_on_singles():
     assert all(bool((ours[name] == theirs[name]).all()) for name in ours)
 
 
-@pytest.mark.parametrize("make", [BabbleVecEnv, dummy])
-def test_hindsight_replay(make):
-    env = make("BabbleReachGoal-v0", 2, max_episode_steps=30)
+@pytest.mark.parametrize(
+    ("make", "env_id"),
+    [
+        (BabbleVecEnv, "BabbleReachGoal-v0"),
+        (dummy, "BabbleReachGoal-v0"),
+        (BabbleVecEnv, "BabbleGraspGoal-v0"),
+    ],
+)
+def test_hindsight_replay(make, env_id):
+    env = make(env_id, 2, max_episode_steps=30)
     model = SAC(
         "MultiInputPolicy",
         env,

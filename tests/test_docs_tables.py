@@ -9,16 +9,18 @@ import re
 import subprocess
 import sys
 
+import gymnasium
 import numpy as np
 import pytest
-from comparing import CONTROLS, IDS
+from comparing import ALL_IDS, BATCHES, CONTROLS_OF, REGIONS, TASKS
 
 from gym_babble import _core
 from gym_babble.config import Config
-from gym_babble.envs import BabbleReachEnv, BabbleReachVectorEnv
+from gym_babble.envs import BabbleGraspEnv
 from gym_babble.registration import ENVIRONMENTS
 
-DOCSTRING = inspect.cleandoc(BabbleReachEnv.__doc__)
+DOCSTRINGS = {task: inspect.cleandoc(kind.__doc__) for task, kind in TASKS.items()}
+each_task = pytest.mark.parametrize("task", TASKS)
 
 
 def table(text: str, first: str) -> list[list[str]]:
@@ -46,43 +48,48 @@ def bounds(text: str, widths: list[float]) -> list[float]:
     return [float(text)]
 
 
-def test_the_table_of_senses_is_the_cores():
-    choices = BabbleReachEnv().choices
-    rows = table(DOCSTRING, "sense")
+@each_task
+def test_the_table_of_senses_is_the_cores(task):
+    choices = TASKS[task]().choices
+    rows = table(DOCSTRINGS[task], "sense")
     assert [row[0] for row in rows] == [entry.name for entry in choices.spec.senses]
+    ranges = choices.joint_range if task == "reach" else np.ptp(choices.ranges, axis=1)
     for (name, size, low, high, unit), entry in zip(rows, choices.spec.senses, strict=True):
         n = int(size)
         assert n == len(entry.labels), name
-        widths = choices.joint_range.tolist()
         for text, numbers in ((low, entry.low), (high, entry.high)):
-            documented = bounds(text, widths)
+            documented = bounds(text, ranges.tolist())
             assert (documented * n)[:n] == pytest.approx(list(numbers)), name
         for label in entry.labels:
-            assert label in unit or entry.name == "time", (name, label)
+            # The labels of all four joints stand in the table of controls.
+            assert label in unit or name == "time" or (name, task) == ("stretch", "grasp"), label
         if name in ("obstacle", "stretch", "arm"):
             assert ("[rad]" in unit) == (entry.unit == "rad"), name
 
 
-def test_the_sum_of_sizes_is_the_flat_observations():
-    size = sum(int(row[1]) for row in table(DOCSTRING, "sense"))
-    assert f"Box({size},)" in DOCSTRING
-    assert BabbleReachEnv(obs="flat").observation_space.shape == (size,)
+@each_task
+def test_the_sum_of_sizes_is_the_flat_observations(task):
+    size = sum(int(row[1]) for row in table(DOCSTRINGS[task], "sense"))
+    assert f"Box({size},)" in DOCSTRINGS[task]
+    assert TASKS[task](obs="flat").observation_space.shape == (size,)
 
 
-def test_the_table_of_controls_is_the_cores():
-    rows = {row[0]: row[1:] for row in table(DOCSTRING, "control")}
-    assert tuple(rows) == CONTROLS
-    for control, (first, second, meaning) in rows.items():
-        env = BabbleReachEnv(control=control)
-        assert env.choices.spec.action.labels == (first, second)
-        assert env.action_space.shape == (2,)
+@each_task
+def test_the_table_of_controls_is_the_cores(task):
+    rows = {row[0]: row[1:] for row in table(DOCSTRINGS[task], "control")}
+    assert tuple(rows) == CONTROLS_OF[task]
+    for control, (*joints, meaning) in rows.items():
+        env = TASKS[task](control=control)
+        assert env.choices.spec.action.labels == tuple(joints)
+        assert env.action_space.shape == (len(joints),)
+        assert f"`Box(-1, 1, ({len(joints)},), float32)`" in DOCSTRINGS[task]
         assert env.action_space.dtype == np.float32
         assert (env.action_space.low == -1).all()
         assert (env.action_space.high == 1).all()
         if control == "delta_posture":
             assert f"±{np.degrees(env.choices.delta_posture):g}°" in meaning
         if control == "torque":
-            assert f"{Config().body.muscles.torque_max:g} N·m" in meaning
+            assert torques(task) in meaning
         if control == "pattern":
             low, high = env.choices.b_range
             assert f"[{low:.2f}, {high:.2f}]".replace("0.", ".") in meaning
@@ -91,30 +98,110 @@ def test_the_table_of_controls_is_the_cores():
             assert f"{seconds:g} s" in meaning
 
 
-def test_the_numbers_in_the_text_are_the_configs():
-    text = " ".join(DOCSTRING.split())
-    config = Config()
-    arm, hand, reach = config.body.arm, config.body.hand, config.reach
-    stretched = hand.palm_m + sum(hand.finger_m)
+def torques(task):
+    """Highest torques, as the docs write them."""
+    if task == "reach":
+        return f"{Config().body.muscles.torque_max:g} N·m"
+    grip = Config().body.grip
+    hand = f"{grip.hand_muscles.torque_max:g}".replace("0.", ".")
+    return f"{grip.arm_muscles.torque_max:g} (hand {hand}) N·m"
+
+
+def numbers_of_reaching(config):
+    """The numbers in the docstring's text, as it writes them."""
+    reach, muscles = config.reach, config.body.muscles
     low, high = reach.distance_m
+    icub = Config.profile_named("icub").reach.distance_m
+    yield f"time constant of {muscles.kd / muscles.kp:g} s"
+    yield f"{100 * low:g}–{100 * high:g} cm"
+    yield f"`icub`: {100 * icub[0]:g}–{100 * icub[1]:g} cm"
+    yield f"within {100 * reach.success_radius_m:g} cm of the target"
+    yield f"joint speeds below {reach.settled_speed_rad_s:g} rad/s".replace("0.", ".")
+    yield f"240 steps ({240 * reach.control_period_s:g} s)"
+
+
+def interval(ends, scale=1.0):
+    return "…".join(f"{scale * end:g}".replace("-", "−") for end in ends)
+
+
+def numbers_of_grasping(config):
+    """The numbers in the docstring's text, as it writes them."""
+    numbers, grip = config.grasp, config.body.grip
+    for muscles in (grip.arm_muscles, grip.hand_muscles):
+        yield f"time constant of {muscles.kd / muscles.kp:g} s"
+    yield "0 (open) to 90°" if grip.flexion_deg == (0, 90) else "another range of flexion"
+    yield f"over {numbers.touch_max_n:g} N"
+    yield f"at least {1000 * numbers.clearance_m:g} mm from the object"
+    yield f"within {100 * numbers.success_radius_m:g} cm of the goal"
+    second = numbers.hold_steps * numbers.control_period_s
+    yield "held the object without support for a second" if second == 1 else "another time"
+    steps = {region: BabbleGraspEnv(region=region) for region in REGIONS}
+    steps = {name: env.choices.spec.max_episode_steps for name, env in steps.items()}
+    seconds = steps["palm_side"] * numbers.control_period_s
+    yield f"{steps['palm_side']} steps ({seconds:g} s), {steps['full']} in region `full`"
+    yield f"the config's {interval_of_diameters(numbers)} cm if not given"
+    icub = Config.profile_named("icub").grasp.palm_side
+    for region in (numbers.palm_side, icub):
+        yield interval(region.polar_deg).replace("…", "–") + "°"
+        elbow = interval(region.elbow_deg).replace("…", "–")
+        yield f"shoulder {'in ' * (region is not icub)}{interval(region.shoulder_deg)}°"
+        yield f"elbow {'in ' * (region is not icub)}{elbow}°"
+    yield f"uniform in {interval(numbers.palm_side.radius_m, 100).replace('…', '–')} cm"
+    full = interval(numbers.full.radius_m, 100).replace("…", "–")
+    yield f'`"full"`: {full} cm, {interval(numbers.full.polar_deg)}°, all postures'
+    for region in (numbers.full, Config.profile_named("icub").grasp.full):
+        ranges = np.degrees(BabbleGraspEnv().choices.ranges[:2])
+        assert region.shoulder_deg[0] <= ranges[0, 0] < ranges[0, 1] <= region.shoulder_deg[1]
+        assert region.elbow_deg[0] <= ranges[1, 0] < ranges[1, 1] <= region.elbow_deg[1]
+
+
+def interval_of_diameters(numbers):
+    return " and ".join(f"{100 * d:g}" for d in numbers.diameters_m)
+
+
+@each_task
+def test_the_numbers_in_the_text_are_the_configs(task):
+    text = " ".join((DOCSTRINGS[task] + inspect.cleandoc(TASKS[task].__init__.__doc__)).split())
+    config = Config()
+    arm, hand = config.body.arm, config.body.hand
+    stretched = hand.palm_m + sum(hand.finger_m)
+    numbers = numbers_of_reaching if task == "reach" else numbers_of_grasping
     for number in (
         f"upper arm {100 * arm.upper_arm_m:g} cm",
         f"forearm {100 * arm.forearm_m:g} cm",
         f"hand of {100 * stretched:g} cm",
-        f"time constant of {config.body.muscles.kd / config.body.muscles.kp:g} s",
-        f"{100 * low:g}–{100 * high:g} cm",
-        f"within {100 * reach.success_radius_m:g} cm of the target",
-        f"joint speeds below {reach.settled_speed_rad_s:g} rad/s".replace("0.", "."),
-        f"240 steps ({240 * reach.control_period_s:g} s)",
+        *numbers(config),
     ):
         assert number in text, number
-    icub = Config.profile_named("icub").reach.distance_m
-    assert f"`icub`: {100 * icub[0]:g}–{100 * icub[1]:g} cm" in text
 
 
-def test_reward_terms_facts_and_outcomes_are_the_cores():
-    text = " ".join(DOCSTRING.split())
-    spec = BabbleReachEnv().choices.spec
+def test_the_pages_table_of_regions_is_the_configs(repository):
+    text = (repository / "docs" / "environments.md").read_text(encoding="utf-8")
+    paper, icub = (Config.profile_named(name).grasp for name in ("paper", "icub"))
+
+    def cell(ends, unit, scale=1.0):
+        return interval(ends, scale).replace("…", "–") + unit
+
+    distance, direction, shoulder, elbow, limit = (row[1:] for row in table(text, "grasping"))
+    regions = (paper.palm_side, paper.full)
+    assert distance == [cell(region.radius_m, " cm", 100) for region in regions]
+    palm, full = direction
+    assert palm == f"{cell(paper.palm_side.polar_deg, '°')} ({cell(icub.palm_side.polar_deg, '°')})"
+    assert full == cell(paper.full.polar_deg, "°")
+    for row, name in ((shoulder, "shoulder_deg"), (elbow, "elbow_deg")):
+        own, other = (getattr(numbers.palm_side, name) for numbers in (paper, icub))
+        assert row == [f"{cell(own, '°')} ({cell(other, '°')})", "all its range"]
+    assert limit == [
+        str(BabbleGraspEnv(region=region).choices.spec.max_episode_steps) for region in REGIONS
+    ]
+    small, large = (f"{100 * diameter:g}" for diameter in paper.diameters_m)
+    assert f"Diameters are {small} or {large} cm" in text
+
+
+@each_task
+def test_reward_terms_facts_and_outcomes_are_the_cores(task):
+    text = " ".join(DOCSTRINGS[task].split())
+    spec = TASKS[task]().choices.spec
     assert f"terms {' + '.join(spec.reward_terms)}" in text
     assert f"`outcome` ({', '.join(spec.outcomes)})" in text
     assert set(spec.outcomes) < set(_core.outcomes())
@@ -122,28 +209,58 @@ def test_reward_terms_facts_and_outcomes_are_the_cores():
     assert re.findall(r"`(\w+)`", info) == [*spec.facts, "outcome", "reward_terms"]
 
 
+@each_task
+def test_the_pages_options_and_facts_are_the_tasks(repository, task):
+    page = (repository / "docs" / "environments.md").read_text(encoding="utf-8")
+    rows = dict(table(page, "task"))
+    options = re.findall(r"`(\w+)`", f"`{rows[task + 'ing']}`".replace("``", "`"))
+    assert tuple(options) == TASKS[task].choices_type.case_options
+    rewards = page.partition("## Rewards")[2].partition("\n## ")[0]
+    assert all(f"`{fact}`" in rewards for fact in TASKS[task]().choices.spec.facts)
+    threads = " ".join(page.split())
+    reach, grasp = (BATCHES[name].choices_type.envs_per_thread for name in TASKS)
+    assert f"each {reach} environments of reaching, or {grasp} of grasping" in threads
+
+
 def test_the_docs_table_of_ids_is_the_registrys(repository):
     text = (repository / "docs" / "environments.md").read_text(encoding="utf-8")
     rows = table(text, "id")
-    assert [row[0] for row in rows] == list(IDS)
+    assert [row[0] for row in rows] == list(ALL_IDS)
     for row, registered in zip(rows, ENVIRONMENTS, strict=True):
         env_id, obs, control, reward, limit, threshold = row
         assert (env_id, obs, control) == (registered.id, registered.obs, registered.control)
         assert reward.startswith(registered.reward)
-        assert limit == str(registered.max_episode_steps or "1 (always)")
-        assert float(threshold.replace("−", "-")) == registered.reward_threshold
+        assert limit == time_limit(registered)
+        if registered.reward_threshold is None:
+            assert threshold == "none"
+        else:
+            assert float(threshold.replace("−", "-")) == registered.reward_threshold
 
 
-def test_the_keywords_and_their_defaults_are_those_of_the_batch():
-    single = inspect.signature(BabbleReachEnv.__init__).parameters
-    batch = inspect.signature(BabbleReachVectorEnv.__init__).parameters
+def time_limit(registered):
+    """As the docs write it."""
+    if registered.task == "grasp":
+        steps = [
+            gymnasium.make(registered.id, region=region).unwrapped.choices.spec.max_episode_steps
+            for region in REGIONS
+        ]
+        return f"{steps[0]} (`full`: {steps[1]})"
+    return str(registered.max_episode_steps or "1 (always)")
+
+
+@each_task
+def test_the_keywords_and_their_defaults_are_those_of_the_batch(task):
+    single = inspect.signature(TASKS[task].__init__).parameters
+    batch = inspect.signature(BATCHES[task].__init__).parameters
     assert {name: p.default for name, p in batch.items() if name in single} == {
         name: p.default for name, p in single.items()
     }
     documented = re.findall(
-        r"^    (\w+): ", inspect.cleandoc(BabbleReachEnv.__init__.__doc__), re.MULTILINE
+        r"^    (\w+): ", inspect.cleandoc(TASKS[task].__init__.__doc__), re.MULTILINE
     )
     assert set(documented) - {"ConfigError"} == set(single) - {"self"}
+    listed = " ".join(BATCHES[task].__doc__.split()).partition("obs, control")[2]
+    assert all(name in f"obs, control{listed}" for name in set(single) - {"self", "render_mode"})
 
 
 def test_the_stub_has_the_extensions_names(repository):

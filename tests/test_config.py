@@ -8,8 +8,15 @@ from dataclasses import asdict, fields, is_dataclass, replace
 import pytest
 
 from gym_babble import Config, _core, scenarios
-from gym_babble.config import Arm, Cylinder, config_json
-from gym_babble.envs import BabbleReachEnv
+from gym_babble.config import (
+    Arm,
+    Cylinder,
+    GraspNumbers,
+    Object,
+    RegionNumbers,
+    config_json,
+)
+from gym_babble.envs import BabbleGraspEnv, BabbleReachEnv
 from gym_babble.errors import BabbleError, ConfigError
 
 PAPER = json.loads(_core.profile_config("paper"))
@@ -43,6 +50,11 @@ def test_every_field_of_the_document_is_a_field_of_the_dataclasses():
                 compare(value, document[f.name], f"{path}.{f.name}")
 
     compare(Config(), PAPER, "config")
+    # The numbers of grasping are among them.
+    walked = dict(leaves(PAPER))
+    for path in ("body.grip.arm_muscles.kp", "body.object.friction", "body.contact.substeps"):
+        assert path in walked
+    assert "grasp.palm_side.polar_deg[0]" in walked
 
 
 @pytest.mark.parametrize("profile", ["paper", "icub"])
@@ -66,6 +78,22 @@ def test_the_icub_differs_where_the_docs_say():
         for name, joint in icub.body.joints.items()
         if name not in ("shoulder", "elbow")
     )
+    assert icub.grasp.palm_side == RegionNumbers(
+        radius_m=(0.15, 0.29),
+        polar_deg=(90, 160),
+        shoulder_deg=(-10, 10),
+        elbow_deg=(15, 90),
+    )
+    # In nothing else.
+    differing = {
+        path for path, value in dict(leaves(ICUB)).items() if dict(leaves(PAPER))[path] != value
+    }
+    assert {path for path in differing if path.startswith("grasp")} == {
+        "grasp.palm_side.polar_deg[0]",
+        *(f"grasp.palm_side.shoulder_deg[{i}]" for i in range(2)),
+        "grasp.palm_side.elbow_deg[0]",
+    }
+    assert icub.body.grip == Config().body.grip
 
 
 def test_file_dict_and_dataclass_are_one_config(tmp_path):
@@ -108,6 +136,72 @@ def test_file_dict_and_dataclass_are_one_config(tmp_path):
     assert firsts[0]["obstacle"][2] == 0.03
 
 
+def test_file_dict_and_dataclass_are_one_config_of_grasping(tmp_path):
+    path = tmp_path / "grasp.toml"
+    path.write_text(
+        "[body.grip]\nreflex_deg = [40.0, 60.0]\n[body.grip.hand_muscles]\nkp = 0.6\n"
+        "[body.object]\nfriction = 0.4\n"
+        "[grasp]\ndiameters_m = [0.03, 0.04, 0.05]\nhold_steps = 8\n"
+        "[grasp.palm_side]\nradius_m = [0.2, 0.25]\n"
+    )
+    changes = {
+        "body": {
+            "grip": {"reflex_deg": [40.0, 60.0], "hand_muscles": {"kp": 0.6}},
+            "object": {"friction": 0.4},
+        },
+        "grasp": {
+            "diameters_m": [0.03, 0.04, 0.05],
+            "hold_steps": 8,
+            "palm_side": {"radius_m": [0.2, 0.25]},
+        },
+    }
+    paper = Config()
+    grip = replace(
+        paper.body.grip,
+        reflex_deg=(40.0, 60.0),
+        hand_muscles=replace(paper.body.grip.hand_muscles, kp=0.6),
+    )
+    made = replace(
+        paper,
+        body=replace(paper.body, grip=grip, object=Object(friction=0.4)),
+        grasp=GraspNumbers(
+            diameters_m=(0.03, 0.04, 0.05),
+            hold_steps=8,
+            palm_side=replace(paper.grasp.palm_side, radius_m=(0.2, 0.25)),
+        ),
+    )
+    assert len({config_json(body) for body in (path, changes, made)}) == 1
+    assert Config.load(path) == made
+    seen = []
+    for body in (path, changes, made):
+        env = BabbleGraspEnv(body=body)
+        env.reset(seed=0)
+        seen.append((env.scenario, env.state_hash()))
+    assert seen.count(seen[0]) == 3
+    assert seen[0][0]["diameter"] in made.grasp.diameters_m
+    # The argument is the same number.
+    changes["grasp"].pop("diameters_m")
+    env = BabbleGraspEnv(body=changes, diameters=made.grasp.diameters_m)
+    env.reset(seed=0)
+    assert (env.scenario, env.state_hash()) == seen[0]
+
+
+def test_numbers_of_one_task_change_no_state_of_the_other():
+    # A state of reaching is good whatever grasps are like, and the other way round.
+    for kind, own, foreign in (
+        (BabbleReachEnv, "reach", "grasp"),
+        (BabbleGraspEnv, "grasp", "reach"),
+    ):
+        plain, other, changed = (
+            kind(body={name: {"delta_posture_deg": 4.0}} if name else {})
+            for name in (None, foreign, own)
+        )
+        for env in (plain, other, changed):
+            env.reset(seed=0)
+        assert plain.state_hash() == other.state_hash() != changed.state_hash()
+        other.set_state(plain.get_state())
+
+
 def test_a_config_reaches_the_simulation():
     env = BabbleReachEnv(body={"reach": {"control_period_s": 0.1}})
     assert env.metadata["render_fps"] == 10
@@ -131,6 +225,12 @@ UNKNOWN = [
     ({"body": {"joints": {"elbow": {"middle_deg": 1}}}}, "middle_deg"),
     ({"body": {"eye": {"lens": 1}}}, "lens"),
     ({"reach": {"speed": 1}}, "reach.speed"),
+    ({"grasp": {"force": 1}}, "grasp.force"),
+    ({"grasp": {"palm_side": {"depth_m": 1}}}, "grasp.palm_side.depth_m"),
+    ({"body": {"grip": {"strength": 1}}}, "body.grip.strength"),
+    ({"body": {"grip": {"hand_muscles": {"ki": 1}}}}, "ki"),
+    ({"body": {"object": {"colour": "red"}}}, "body.object.colour"),
+    ({"body": {"contact": {"hardness": 1}}}, "body.contact.hardness"),
     ({1: 2}, "1"),
 ]
 
@@ -166,6 +266,24 @@ OUT_OF_BOUNDS = [
     ({"reach": {"control_period_s": float("inf")}}, None),
     ({"reach": {"success_radius_m": 0.5}}, "success_radius_m"),
     ({"reach": []}, "reach"),
+    ({"grasp": []}, "grasp"),
+    ({"grasp": {"diameters_m": []}}, "grasp.diameters_m.*at least one"),
+    ({"grasp": {"diameters_m": [0.03, 0.3]}}, r"diameters_m\[1\].*0.2"),
+    ({"grasp": {"diameters_m": 0.03}}, "diameters_m"),
+    ({"grasp": {"any_diameter_between": "yes"}}, "any_diameter_between"),
+    ({"grasp": {"full": {"radius_m": [0.3, 0.1]}}}, r"full.radius_m\[1\]"),
+    ({"grasp": {"palm_side": {"polar_deg": [40]}}}, "polar_deg"),
+    ({"grasp": {"hold_steps": 0}}, "hold_steps"),
+    ({"grasp": {"physics_steps": 300}}, "physics_steps"),
+    ({"grasp": {"held_share": 1.0}}, "held_share.*0.999"),
+    ({"grasp": {"touch_max_n": 0}}, "touch_max_n"),
+    ({"body": {"grip": {"fingers": "five"}}}, "fingers"),
+    ({"body": {"grip": {"flexion_deg": [90, 0]}}}, "flexion_deg"),
+    ({"body": {"grip": {"hand_muscles": {"kp": 0}}}}, "grip.hand_muscles.kp"),
+    ({"body": {"object": {"friction": -1}}}, "object.friction"),
+    ({"body": {"object": {"density_kg_m3": 0}}}, "object.density_kg_m3"),
+    ({"body": {"contact": {"substeps": 0}}}, "contact.substeps"),
+    ({"body": {"contact": {"frequency_hz": -1}}}, "contact.frequency_hz"),
     ({"body": "big"}, "body"),
     ({"profile": "giant"}, "giant"),
     ({"profile": 3}, "profile"),
@@ -177,6 +295,8 @@ OUT_OF_BOUNDS = [
 def test_what_cannot_be_is_refused_by_name(body, named):
     with pytest.raises(ConfigError, match=named) as caught:
         BabbleReachEnv(body=body)
+    with pytest.raises(ConfigError, match=named):
+        BabbleGraspEnv(body=body)
     assert isinstance(caught.value, ValueError)
     assert isinstance(caught.value, BabbleError)
 
@@ -232,6 +352,14 @@ def test_a_config_with_no_room_for_a_case_says_so():
         env.reset(seed=0)
     with pytest.raises(BabbleError, match="no legal movement"):
         scenarios("table1", 1, body=body)
+
+
+def test_a_config_with_no_room_for_a_grasp_says_so():
+    # All objects lie in the shoulder.
+    region = {"radius_m": [0.01, 0.011], "polar_deg": [-5, 5]}
+    env = BabbleGraspEnv(body={"grasp": {"palm_side": region}})
+    with pytest.raises(BabbleError, match=r"no case in 10000 tries.*object"):
+        env.reset(seed=0)
 
 
 def test_the_config_is_whole_in_asdict_of_a_profile():

@@ -139,9 +139,9 @@ pub struct Step {
 /// What an episode shows beside its senses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Standing {
-    /// Where the task has brought what it moves \[m\]; zeros without a goal form.
+    /// Where the task has brought what it moves \[m\].
     pub achieved: [f32; 2],
-    /// Where it should be \[m\]; zeros without a goal form.
+    /// Where it should be \[m\].
     pub desired: [f32; 2],
     /// How the episode stands.
     pub outcome: Outcome,

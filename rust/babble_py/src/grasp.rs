@@ -23,6 +23,10 @@ pub(crate) struct GraspTask {
 #[pymethods]
 impl GraspTask {
     #[new]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "keyword arguments, as Python has them"
+    )]
     #[pyo3(signature = (config, *, control="delta_posture", reward="progress", goal=false, region="palm_side", enclosure_reflex=false, max_episode_steps=None, record=false))]
     fn new(
         config: &str,

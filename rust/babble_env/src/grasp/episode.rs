@@ -36,6 +36,10 @@ pub struct Moment {
 }
 
 /// Everything that changes: what a snapshot holds.
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is a fact of the episode"
+)]
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct GraspState {
     /// Arm, hand, object, support and obstacle.
@@ -283,6 +287,7 @@ fn fresh(task: &GraspTask, case: GraspCase, request: GraspRequest, stream: Strea
 }
 
 /// What the progress reward is the change of.
+#[derive(Clone, Copy)]
 struct Potential {
     distance: f64,
     enclosure: f64,
@@ -408,7 +413,7 @@ impl GraspState {
         if terminated || truncated {
             self.phase = Phase::Ended;
         }
-        let terms = self.reward_terms(task, &before);
+        let terms = self.reward_terms(task, before);
         Step {
             reward: terms.iter().sum(),
             terms,
@@ -417,7 +422,7 @@ impl GraspState {
         }
     }
 
-    fn reward_terms(&self, task: &GraspTask, before: &Potential) -> [f64; MAX_TERMS] {
+    fn reward_terms(&self, task: &GraspTask, before: Potential) -> [f64; MAX_TERMS] {
         let mut terms = [0.0; MAX_TERMS];
         if task.options.goal {
             terms[0] = goal_reward(&task.config, self.achieved(task), self.desired());

@@ -1,0 +1,71 @@
+"""Do two sizes interfere, in where the arm goes and in how the hand closes?
+
+An agent babbles with small objects alone, with big ones alone, or with both, and recalls postures
+for cases of each size: how far the palm's surface stays from the object's (negative: inside), and
+the hand's equilibrium points. docs/grasping.md has what comes out.
+"""
+
+import argparse
+
+import gymnasium as gym
+import numpy as np
+
+from gym_babble import HebbGrasping, scenarios
+from gym_babble.envs import BabbleGraspEnv
+
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("--seeds", type=int, default=3, help="seeds, from 100 on")
+parser.add_argument("--babbles", type=int, default=1_000)
+parser.add_argument("--cases", type=int, default=200, help="cases of each seed")
+arguments = parser.parse_args()
+
+SMALL, BIG = 0.024, 0.06
+# What changes: its name, diameters babbled with, body and task, the agent's maps and rule.
+CHANGES = [
+    ("small alone", [SMALL], {}, {}),
+    ("big alone", [BIG], {}, {}),
+    ("both", [SMALL, BIG], {}, {}),
+    ("both, reflex EP 20, 20", [SMALL, BIG], {"body": {"grip": {"reflex_deg": [70, 70]}}}, {}),
+    ("both, sigma 1.5", [SMALL, BIG], {}, {"sigma": 1.5}),
+    ("both, eta 0.1", [SMALL, BIG], {}, {"rule": {"eta": 0.1}}),
+    ("both, xi 0.8", [SMALL, BIG], {}, {"rule": {"xi": 0.8}}),
+]
+
+
+def recall(agent: HebbGrasping, diameter: float, seed: int) -> np.ndarray:
+    """Gap between palm and surface [cm], and EPs of thumb and finger [deg], of each case."""
+    cases = [
+        {**case, "diameter": diameter}
+        for case in scenarios("palm_side", arguments.cases, seed, split="validation")
+        if case["diameter"] == BIG  # A start that is clear of the big object is clear of both.
+    ]
+    envs = gym.make_vec("BabbleGrasp-v0", num_envs=len(cases))
+    senses, _ = envs.reset(seed=0, options={"scenario": cases})
+    recalled = agent.decide(senses["eye"], senses["fovea"])
+    low, high = BabbleGraspEnv().choices.ranges[:2].T
+    arms = low + recalled[:, :2] * (high - low)
+    objects = np.array([case["object"] for case in cases])
+    # The palm's surface is 1 cm from the forearm's line, on its left.
+    elbows = 0.15 * np.stack([np.cos(arms[:, 0]), np.sin(arms[:, 0])], 1)
+    along = arms.sum(axis=1)
+    normals = np.stack([-np.sin(along), np.cos(along)], 1)
+    gaps = ((objects - elbows) * normals).sum(axis=1) - 0.01 - diameter / 2
+    return np.column_stack([100 * gaps, recalled[:, 2:]])
+
+
+print("| babbled with | object | gap [cm] | thumb EP [deg] | finger EP [deg] | babbled EPs [deg] |")
+print("| --- | --- | --- | --- | --- | --- |")
+for name, diameters, body, config in CHANGES:
+    found: dict[float, list[np.ndarray]] = {SMALL: [], BIG: []}
+    hands: dict[float, list[np.ndarray]] = {SMALL: [], BIG: []}
+    for seed in range(100, 100 + arguments.seeds):
+        env = BabbleGraspEnv(diameters=diameters, body={"profile": "paper", **body})
+        agent = HebbGrasping(env, seed=seed, config=config).learn(arguments.babbles)
+        for diameter in (SMALL, BIG):
+            found[diameter].append(recall(agent, diameter, seed))
+            hands[diameter].append(agent.babbled["hand"][agent.babbled["diameter"] == diameter])
+    for diameter in (SMALL, BIG):
+        cells = [f"{x.mean():.2f} ± {x.std():.2f}" for x in np.concatenate(found[diameter]).T]
+        babbled = np.concatenate(hands[diameter])
+        means = ", ".join(f"{ep:.1f}" for ep in babbled.mean(axis=0)) if len(babbled) else "–"
+        print(f"| {name} | {100 * diameter:g} cm | {' | '.join(cells)} | {means} |", flush=True)

@@ -1,0 +1,36 @@
+"""Which objects can this hand hold, and which can the fovea tell apart?
+
+The paper prints diameters of 30 and 12 cm. The reflex closes on spheres of many sizes, and the eye
+looks at them; docs/grasping.md has what comes out.
+"""
+
+import argparse
+import os
+
+import numpy as np
+
+from gym_babble.envs import BabbleGraspEnv
+from gym_babble.table2 import hold_rates
+
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("--trials", type=int, default=100, help="trials of holding, of each size")
+parser.add_argument(
+    "--diameters", type=float, nargs="+", default=[1.5, 2, 2.4, 3, 4, 5, 6, 7, 8, 9, 10, 12]
+)
+arguments = parser.parse_args()
+
+print(f"{os.cpu_count()} processors")
+print("| diameter [cm] | held | 95 % | flexion thumb, finger [deg] | edges in the fovea |")
+print("| --- | --- | --- | --- | --- |")
+for centimetres in arguments.diameters:
+    diameter = centimetres / 100
+    (rate,) = hold_rates(arguments.trials, diameters=[diameter])
+    env = BabbleGraspEnv(diameters=[diameter])
+    senses, _ = env.reset(seed=0, options={"object": (0.0, 0.24), "start": (-1.0, 0.5)})
+    edges = float(np.sum(senses["fovea"] > 0.02))
+    thumb, finger = rate["flexion_deg"]
+    print(
+        f"| {centimetres:g} | {rate['rate']:.2f} | {rate['low']:.2f}–{rate['high']:.2f} "
+        f"| {thumb:.0f}, {finger:.0f} | {edges:.0f} of 441 |",
+        flush=True,
+    )

@@ -19,7 +19,7 @@ MAY_KNOW = {
     "babble_brain": set(),
     "babble_body": set(),
     "babble_env": {"babble_brain", "babble_body"},
-    "babble_agent": {"babble_brain", "babble_body", "babble_env"},
+    "babble_agent": {"babble_brain", "babble_env"},
     "babble_py": {"babble_brain", "babble_body", "babble_env", "babble_agent"},
 }
 

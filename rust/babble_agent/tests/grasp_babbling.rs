@@ -1,7 +1,6 @@
 //! Babbling with the object in the hand and what is learnt from it.
 
 use babble_agent::AgentError;
-use babble_agent::grasp::babbling::object_at_palm;
 use babble_agent::grasp::holding::trials;
 use babble_agent::grasp::{Experience, GraspBabbling, GraspHebb, GraspHebbConfig};
 use babble_brain::{MapConfig, PopulationMap};
@@ -104,20 +103,6 @@ fn kept_objects_are_in_the_hand() {
         // The small one nearly lets the fingers close.
         let least = if *diameter < 0.03 { 0.01 } else { 0.3 };
         assert!(flexion[1] < reflex[1] - least, "{flexion:?}");
-    }
-}
-
-/// The object that is put at the palm is 1 mm before it, on its support, untouched.
-#[test]
-fn objects_are_put_at_the_palm() {
-    let task = task();
-    for diameter in DIAMETERS {
-        let arm = [0.4, 0.9];
-        let (world, case) = object_at_palm(&task, arm, diameter);
-        assert!(task.robot.has_support(&world) && !task.robot.touch(&world).any());
-        assert!((task.pocket_offset(&world, case.radius()).norm() - 1e-3).abs() < 1e-5);
-        assert!(task.in_hand(&world, case.radius()));
-        assert_eq!((case.start, case.diameter), (arm, diameter));
     }
 }
 

@@ -3,7 +3,7 @@
 
 mod playing;
 
-use babble_env::grasp::{GraspCase, GraspRequest, Region, protocol};
+use babble_env::grasp::{GraspCase, GraspRequest, InHand, Region, protocol};
 use babble_env::{
     Autoreset, Batch, Config, Control, EnvError, GraspOptions, GraspTask, Purpose, Reward, Stream,
 };
@@ -455,4 +455,26 @@ fn a_stream_gives_its_case() {
         protocol::random(&task, 3, 4, Purpose::Test).unwrap()[2],
         first
     );
+}
+
+/// The object that is put at the palm is 1 mm before it, on its support, untouched; the reflex then
+/// has it, and keeps it without the support. Catches a gap on the wrong side, a ball that begins in
+/// the hand, and a support that comes back.
+#[test]
+fn objects_are_put_at_the_palm() {
+    let task = GraspTask::new(Config::profile("paper").unwrap(), GraspOptions::default()).unwrap();
+    for diameter in [0.024, 0.06] {
+        let arm = [0.4, 0.9];
+        let mut object = InHand::new(&task, arm, diameter);
+        let (world, radius) = (object.world(), diameter / 2.0);
+        assert!(task.robot.has_support(world) && !task.robot.touch(world).any());
+        assert!((task.pocket_offset(world, radius).norm() - 1e-3).abs() < 1e-5);
+        assert!(task.in_hand(world, radius) && !object.is_held(&task));
+        assert_eq!(object.start(), arm);
+        object.carry(&task, arm, 3.0);
+        assert!(object.is_held(&task));
+        object.remove_support(&task);
+        assert!(object.carry(&task, [0.6, 0.7], 1.0) < 3e-3);
+        assert!(object.is_held(&task) && !task.robot.has_support(object.world()));
+    }
 }

@@ -1,7 +1,6 @@
 //! Babbling with the object in the hand: the enclosure reflex closes the hand, the arm moves.
 
-use babble_body::robot::{Ball, Setup, World, towards};
-use babble_env::grasp::{FOVEA_NEURONS, GraspCase, GraspTask, see};
+use babble_env::grasp::{FOVEA_NEURONS, GraspTask, InHand};
 use babble_env::{EnvError, Pool, Purpose, Stream};
 use rayon::prelude::*;
 
@@ -11,8 +10,6 @@ use crate::error::AgentError;
 const CHUNK: u64 = 64;
 /// With fewer kept objects than one in this many, nothing can be learnt.
 const RAREST: u64 = 1_000;
-/// Gap between the open hand's palm and the object that is put there \[m\]; 1 mm \[C\].
-const GAP_M: f64 = 0.001;
 /// Time that the reflex closes the hand before the arm moves, and time that it moves \[s\]; 2 and 2
 /// \[C\], in which the arm makes 86 % of its way.
 const CLOSING_S: f64 = 2.0;
@@ -124,19 +121,18 @@ impl GraspBabbling {
 /// it.
 fn babble(task: &GraspTask, stream: &mut Stream) -> Result<Option<Experience>, EnvError> {
     let diameter = task.draw_diameter(stream);
-    let from = task.draw_free_posture(diameter / 2.0, stream)?;
+    let mut object = InHand::draw(task, diameter, stream)?;
     let to = task.draw_free_posture(diameter / 2.0, stream)?;
-    let (mut world, case) = object_at_palm(task, from, diameter);
-    run(task, &mut world, from, CLOSING_S);
-    run(task, &mut world, to, MOVING_S);
-    if !task.in_hand(&world, case.radius()) || !task.robot.touch(&world).encloses() {
+    object.carry(task, object.start(), CLOSING_S);
+    object.carry(task, to, MOVING_S);
+    if !object.is_held(task) {
         return Ok(None);
     }
     let mut fovea = Box::new([0.0; FOVEA_NEURONS]);
-    let Some(gaze) = see(task, &world, &case, &mut fovea) else {
+    let Some(gaze) = object.see(task, &mut fovea) else {
         return Ok(None);
     };
-    let posture = task.robot.posture(&world);
+    let posture = object.posture(task);
     let share = task.robot.normalised(posture);
     Ok(Some(Experience {
         eye: task.eye.normalised(gaze).map(|x| x as f32),
@@ -145,38 +141,4 @@ fn babble(task: &GraspTask, stream: &mut Stream) -> Result<Option<Experience>, E
         hand: [posture[2], posture[3]].map(|flexion| (90.0 - flexion.to_degrees()) as f32),
         diameter,
     }))
-}
-
-/// The arm in a posture \[rad\] with the open hand, and the object on its support before the palm.
-#[must_use]
-pub fn object_at_palm(task: &GraspTask, arm: [f64; 2], diameter: f64) -> (World, GraspCase) {
-    let radius = diameter / 2.0;
-    let object = task.before_palm(arm, radius, GAP_M);
-    let world = task.robot.world(&Setup {
-        posture: task.robot.open_hand(arm),
-        ball: Ball {
-            centre: object,
-            radius,
-        },
-        support: true,
-        obstacle: None,
-    });
-    let case = GraspCase {
-        start: arm,
-        object,
-        diameter,
-        goal: None,
-        obstacle: None,
-    };
-    (world, case)
-}
-
-/// The reflex on the hand and the arm's muscles pulling to a posture \[rad\], for some time \[s\].
-fn run(task: &GraspTask, world: &mut World, arm: [f64; 2], seconds: f64) {
-    let [thumb, finger] = task.reflex();
-    let drive = towards([arm[0], arm[1], thumb, finger]);
-    let steps = (seconds / task.config.grasp.physics_step_s()).round() as usize;
-    for _ in 0..steps {
-        task.robot.step(world, &drive);
-    }
 }

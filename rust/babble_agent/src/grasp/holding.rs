@@ -1,11 +1,8 @@
 //! How well the reflex holds: objects put at the palm, carried about without support.
 
-use babble_body::robot::{Drive, World, towards};
-use babble_env::grasp::GraspTask;
+use babble_env::grasp::{GraspTask, InHand};
 use babble_env::{EnvError, Pool, Purpose, Stream};
 use rayon::prelude::*;
-
-use super::babbling::object_at_palm;
 
 /// Time that the reflex closes the hand before the support goes \[s\].
 const CLOSING_S: f64 = 3.0;
@@ -45,32 +42,17 @@ pub fn trials(
 }
 
 fn trial(task: &GraspTask, diameter: f64, stream: &mut Stream) -> Result<Trial, EnvError> {
-    let mut posture = || task.draw_free_posture(diameter / 2.0, stream);
-    let start = posture()?;
-    let (mut world, case) = object_at_palm(task, start, diameter);
-    let mut trial = Trial {
-        held: false,
-        penetration: 0.0,
-        flexion: [0.0; 2],
-    };
-    trial.carry(task, &mut world, start, CLOSING_S);
-    let flexion = task.robot.posture(&world);
-    trial.flexion = [flexion[2], flexion[3]];
-    task.robot.remove_support(&mut world);
+    let mut object = InHand::draw(task, diameter, stream)?;
+    let mut penetration = object.carry(task, object.start(), CLOSING_S);
+    let [.., thumb, finger] = object.posture(task);
+    object.remove_support(task);
     for _ in 0..(MOVING_S / CHANGE_S) as usize {
-        trial.carry(task, &mut world, posture()?, CHANGE_S);
+        let to = task.draw_free_posture(diameter / 2.0, stream)?;
+        penetration = penetration.max(object.carry(task, to, CHANGE_S));
     }
-    trial.held = task.in_hand(&world, case.radius()) && task.robot.touch(&world).encloses();
-    Ok(trial)
-}
-
-impl Trial {
-    fn carry(&mut self, task: &GraspTask, world: &mut World, arm: [f64; 2], seconds: f64) {
-        let [thumb, finger] = task.reflex();
-        let drive: Drive = towards([arm[0], arm[1], thumb, finger]);
-        for _ in 0..(seconds / task.config.grasp.physics_step_s()).round() as usize {
-            task.robot.step(world, &drive);
-            self.penetration = self.penetration.max(task.robot.penetration(world));
-        }
-    }
+    Ok(Trial {
+        held: object.is_held(task),
+        penetration,
+        flexion: [thumb, finger],
+    })
 }

@@ -3,6 +3,7 @@
 pub mod case;
 mod enclosure;
 mod episode;
+mod in_hand;
 mod numbers;
 mod options;
 mod picture;
@@ -14,6 +15,7 @@ mod task;
 pub use case::{GraspCase, GraspRequest};
 pub use enclosure::{Contacts, Enclosure, Grip};
 pub use episode::{Drawn, FACTS, Grasp, GraspState, goal_reward};
+pub use in_hand::InHand;
 pub use numbers::{GraspNumbers, RegionNumbers};
 pub use options::{GraspOptions, Region};
 pub use sight::{FOVEA_NEURONS, see};

@@ -202,6 +202,8 @@ def test_a_foreign_safetensors_file_is_refused(tmp_path):
         ({"config": {"variant": "modern"}}, None),
         ({"env": gymnasium.make("BabbleReach-v0", control="torque")}, "torque"),
         ({"env": gymnasium.make("CartPole-v1")}, "not a Babble environment"),
+        ({"env": "BabbleGrasp-v0"}, "BabbleGrasp.*reaching"),
+        ({"env": gymnasium.make_vec("BabbleGraspGoal-v0", num_envs=2)}, "BabbleGrasp.*reaching"),
         ({"env": object()}, "not a Babble environment"),
     ],
     ids=lambda x: str(x)[:40],

@@ -79,6 +79,42 @@ def test_a_larger_object_has_more_red_and_the_hand_can_be_seen_to_close(camera):
     assert (env.render() != open_hand).any(axis=2).sum() > 30
 
 
+def test_the_fovea_is_the_middle_of_what_the_eye_sees_and_its_edges_are_what_is_sensed():
+    # Catches rows for columns, and a picture of another gaze than the observation's.
+    fovea, edges = (
+        BabbleGraspEnv(render_mode="rgb_array", camera=camera, width=63, height=63)
+        for camera in ("fovea", "edges")
+    )
+    eye = BabbleGraspEnv(obs="retina", retina_size=630, render_mode="rgb_array")
+    actions = [[1, 0.5, 0, 0.5]] * 12
+    for env in (fovea, edges, eye):
+        observation, _ = env.reset(seed=0, options=GRASP)
+    for action in actions:
+        picture = edges.render()
+        assert (picture == picture[..., :1]).all()
+        blocks = picture[..., 0].reshape(21, 3, 21, 3).mean(axis=(1, 3)) / 255
+        assert blocks.ravel() == pytest.approx(observation["fovea"], abs=0.01)
+        assert blocks.max() > 0.2
+        middle = observation["retina"][284:347, 284:347]
+        near = np.abs(fovea.render().astype(int) - middle).max(axis=2) < 60
+        assert near.mean() > 0.9
+        for env in (fovea, edges, eye):
+            observation = env.step(action)[0]
+
+
+@each_task
+def test_every_camera_has_the_size_asked_for(task):
+    frames = {}
+    for camera in ("third_person", "eye", "fovea", "edges"):
+        env = TASKS[task](render_mode="rgb_array", camera=camera, width=100, height=70)
+        env.reset(seed=0, options=CASES[task])
+        frames[camera] = env.render()
+        assert (frames[camera].shape, frames[camera].dtype) == ((70, 100, 3), np.uint8)
+    assert len({frame.tobytes() for frame in frames.values()}) == 4
+    # The fovea is the eye's view from near.
+    assert reds(frames["fovea"]) > 20 * reds(frames["eye"])
+
+
 def test_arm_and_hand_can_hide_the_object():
     # Unlike reaching's target, which shows through.
     env = BabbleGraspEnv(render_mode="rgb_array", camera="eye", width=400, height=400)

@@ -53,19 +53,25 @@ def recall(agent: HebbGrasping, diameter: float, seed: int) -> np.ndarray:
     return np.column_stack([100 * gaps, recalled[:, 2:]])
 
 
-print("| babbled with | object | gap [cm] | thumb EP [deg] | finger EP [deg] | babbled EPs [deg] |")
-print("| --- | --- | --- | --- | --- | --- |")
+HEADS = ("babbled with", "object", "gap [cm]", "thumb EP [deg]", "finger EP [deg]")
+HEADS += ("babbled EPs [deg]", "EPs recalled from the object in the hand [deg]")
+print(f"| {' | '.join(HEADS)} |")
+print("| --- " * len(HEADS) + "|")
 for name, diameters, body, config in CHANGES:
     found: dict[float, list[np.ndarray]] = {SMALL: [], BIG: []}
     hands: dict[float, list[np.ndarray]] = {SMALL: [], BIG: []}
     for seed in range(100, 100 + arguments.seeds):
         env = BabbleGraspEnv(diameters=diameters, body={"profile": "paper", **body})
         agent = HebbGrasping(env, seed=seed, config=config).learn(arguments.babbles)
+        left = agent.babbled
+        again = agent.decide(left["eye"], left["fovea"])[:, 2:]
         for diameter in (SMALL, BIG):
+            of_size = left["diameter"] == diameter
             found[diameter].append(recall(agent, diameter, seed))
-            hands[diameter].append(agent.babbled["hand"][agent.babbled["diameter"] == diameter])
+            hands[diameter].append(np.hstack([left["hand"][of_size], again[of_size]]))
     for diameter in (SMALL, BIG):
         cells = [f"{x.mean():.2f} ± {x.std():.2f}" for x in np.concatenate(found[diameter]).T]
         babbled = np.concatenate(hands[diameter])
-        means = ", ".join(f"{ep:.1f}" for ep in babbled.mean(axis=0)) if len(babbled) else "–"
-        print(f"| {name} | {100 * diameter:g} cm | {' | '.join(cells)} | {means} |", flush=True)
+        means = [f"{ep:.1f}" for ep in babbled.mean(axis=0)] if len(babbled) else ["–"] * 4
+        cells += [", ".join(means[:2]), ", ".join(means[2:])]
+        print(f"| {name} | {100 * diameter:g} cm | {' | '.join(cells)} |", flush=True)

@@ -1,11 +1,12 @@
 """From which side must the hand come?
 
-An agent that knows the arm's geometry goes straight to the object and closes. Its success depends on
-where the shoulder starts relative to the object: docs/grasping.md has what comes out.
+An agent that knows the arm's geometry goes straight to the object and closes. Its success depends
+on where the shoulder starts relative to the object: docs/grasping.md has what comes out.
 """
 
 import argparse
 import os
+from itertools import pairwise
 
 import numpy as np
 
@@ -26,7 +27,7 @@ edges = np.linspace(-200, 240, arguments.bins + 1)
 
 print("| object's direction minus start shoulder [deg] | cases | palm touches | grasped |")
 print("| --- | --- | --- | --- |")
-for low, high in zip(edges, edges[1:], strict=False):
+for low, high in pairwise(edges):
     chosen = (ahead >= low) & (ahead < high)
     if chosen.any():
         rates = f"{palm[chosen].mean():.2f} | {held[chosen].mean():.2f}"

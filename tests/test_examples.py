@@ -25,6 +25,15 @@ RUNS = {
         "--seeds 1 --cases 20 --movements 50",
         r"\| 2,000 movements( \| \d\.\d{3}){4} \|",
     ),
+    "grasp_sizes.py": (
+        "--trials 2 --diameters 2.4",
+        r"\| 2\.4 \| \d\.\d\d \| .+ \| \d+, \d+ \| \d+ of 441 \|",
+    ),
+    "grasp_sides.py": ("--cases 12", r"\| all \| 12 \| \d\.\d\d \| \d\.\d\d \|"),
+    "grasp_interference.py": (
+        "--seeds 1 --babbles 12 --cases 8",
+        r"\| both, xi 0\.8 \| 6 cm \|.+\|",
+    ),
     "sac_her.py": ("--steps 4000 --cases 20", r"success 0\.\d+ \[0\.\d+, .+\]"),
 }
 ELSEWHERE = {"rllib_ppo.py"}

@@ -69,7 +69,8 @@ def wilson(count: int, n: int, z: float = 1.959964) -> tuple[float, float]:
     p = count / n
     middle = (p + z * z / (2 * n)) / (1 + z * z / n)
     half = z / (1 + z * z / n) * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
-    return max(0.0, middle - half), min(1.0, middle + half)
+    # The share lies within, also where rounding would have it beside an end at 0 or 1.
+    return max(0.0, min(p, middle - half)), min(1.0, max(p, middle + half))
 
 
 def evaluate(

@@ -109,6 +109,10 @@ def test_wilsons_interval():
         reference = binomtest(count, n).proportion_ci(0.95, method="wilson")
         assert wilson(count, n) == pytest.approx((reference.low, reference.high), abs=1e-6)
     assert wilson(0, 0) == (0, 1)
+    for n in range(1, 50):  # Rounding leaves no share beside its interval.
+        for count in range(n + 1):
+            low, high = wilson(count, n)
+            assert 0 <= low <= count / n <= high <= 1
 
 
 def test_evaluation_counts_what_happened():

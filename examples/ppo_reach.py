@@ -8,9 +8,12 @@ import argparse
 
 from gym_babble import evaluate, scenarios
 from gym_babble.ppo import PRESETS, train_ppo
+from gym_babble.tasks import REACH, task_of
+
+presets = [name for name, preset in PRESETS.items() if task_of(preset.env_id) == REACH]
 
 parser = argparse.ArgumentParser(description=__doc__)
-parser.add_argument("--preset", choices=PRESETS, default="pattern")
+parser.add_argument("--preset", choices=presets, default="pattern")
 parser.add_argument("--steps", type=int, help="steps to learn from; the preset's if not given")
 parser.add_argument("--cases", type=int, default=1_000, help="cases of Table I to be tested on")
 parser.add_argument("--save", help="file for the model, which PPO.load reads")

@@ -13,6 +13,7 @@ import warnings
 
 from gym_babble._core import __version__, debug_build
 from gym_babble.agents import (
+    GraspRandom,
     GraspScripted,
     HebbBabbling,
     HebbGrasping,
@@ -28,6 +29,7 @@ from gym_babble.scenarios import Scenario, scenarios
 __all__ = [
     "Config",
     "Evaluation",
+    "GraspRandom",
     "GraspScripted",
     "HebbBabbling",
     "HebbGrasping",

@@ -26,7 +26,7 @@ from gym_babble.doctor import examine
 from gym_babble.errors import BabbleError, ConfigError, MissingExtraError
 from gym_babble.evaluation import evaluate as run_evaluation
 from gym_babble.film import record, save_film
-from gym_babble.loading import check_env_id, load_agent
+from gym_babble.loading import load_agent
 from gym_babble.registration import ENVIRONMENTS
 from gym_babble.report import write_report
 from gym_babble.scenarios import scenarios
@@ -42,11 +42,13 @@ from gym_babble.tables import (
     table2_tables,
     tally,
 )
+from gym_babble.tasks import TASKS, task_of
 
 __all__ = ["app", "main"]
 
 app = typer.Typer(
-    help="Reaching learned by motor babbling: environments, agents and the paper's experiments.",
+    help="Reaching and grasping learned by motor babbling: environments, agents and the paper's "
+    "experiments.",
     add_completion=False,
     rich_markup_mode=None,
 )
@@ -60,22 +62,36 @@ out = Console()
 messages = Console(stderr=True)
 
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON document on stdout.")]
+TaskName = Annotated[Literal["reach", "grasp"], typer.Option(help="Task.")]
 BodyName = Annotated[str, typer.Option(help="paper, icub, or a TOML or JSON file.")]
 Seed = Annotated[int, typer.Option(min=0, help="Seed.")]
 Seeds = Annotated[int, typer.Option(min=1, help="How many seeds: 0, 1, ...")]
-Cases = Annotated[int, typer.Option(min=1, help="Cases of Table I, of each seed.")]
-Movements = Annotated[int, typer.Option(min=1, help="Legal movements to learn from.")]
-Babbles = Annotated[int, typer.Option(min=1, help="Babbles to learn from.")]
-Variant = Annotated[Literal["paper", "conjunctive"], typer.Option(help="Variant of the agent.")]
+Cases = Annotated[int, typer.Option(min=1, help="Tests, of each seed.")]
+Movements = Annotated[int, typer.Option(min=1, help="Legal movements to learn from (reaching).")]
+Babbles = Annotated[int, typer.Option(min=1, help="Babbles to learn from (grasping).")]
+Variant = Annotated[
+    Literal["paper", "conjunctive"], typer.Option(help="Variant of the agent (reaching).")
+]
 QuasiStatic = Annotated[
-    bool, typer.Option("--quasi-static", help="Babble without the muscles' lag: faster.")
+    bool, typer.Option("--quasi-static", help="Babble without the muscles' lag: faster (reaching).")
 ]
 EnvId = Annotated[
     str | None,
-    typer.Option(help="Environment to act in; BabbleReachPattern-v0 if not given."),
+    typer.Option(
+        help="Environment to act in; BabbleReachPattern-v0 if not given, or BabbleGrasp-v0 for an "
+        "agent that babbled grasping."
+    ),
 ]
 OwnBody = Annotated[
     str | None, typer.Option(help="paper, icub, or a file; the one it learnt on if not given.")
+]
+ALL_AGENTS = "; ".join(
+    f"{task}: " + ",".join(f"[{one.key}]" if one.asked_for else one.key for one in CONTENDERS[task])
+    for task in TASKS
+)
+Agents = Annotated[
+    str | None,
+    typer.Option(help=f"Some of {ALL_AGENTS}; all but those in brackets if not given."),
 ]
 AgentName = Annotated[
     str,
@@ -119,7 +135,7 @@ def info(
     as_json: AsJson = False,
 ) -> None:
     """Show an environment: senses, action, reward terms, limits."""
-    check_env_id(env_id)
+    task_of(env_id)
     row = next(row for row in ENVIRONMENTS if row.id == env_id)
     env: Any = gymnasium.make(env_id, body=body)
     spec = env.unwrapped.choices.spec
@@ -145,8 +161,10 @@ def info(
 def babble(
     *,
     file: Annotated[Path, typer.Option("--out", help="File for the agent.")],
+    task: TaskName = "reach",
     variant: Variant = "paper",
     movements: Movements = 20_000,
+    babbles: Babbles = 1_000,
     seed: Seed = 0,
     body: BodyName = "paper",
     quasi_static: QuasiStatic = False,
@@ -154,25 +172,23 @@ def babble(
 ) -> None:
     """Let an agent babble and learn, and save it."""
     _check_folder_of(file)
-    agent = _learn(variant, movements, seed, body, quasi_static=quasi_static)
+    agent: HebbBabbling | HebbGrasping
+    chosen: dict[str, Any] = {"body": body, "seed": seed}
+    if task == "reach":
+        agent = _learn(variant, movements, seed, body, quasi_static=quasi_static)
+        made, good = agent.movements, agent.legal_movements
+        chosen = {"variant": variant, **chosen, "quasi_static": quasi_static}
+    else:
+        agent = _learn_grasping(babbles, seed, body)
+        made, good = agent.babbles, agent.kept
     agent.save(file)
+    names = TASKS[task]
     if as_json:
-        _print_json(
-            {
-                "file": str(file),
-                "variant": variant,
-                "body": body,
-                "seed": seed,
-                "quasi_static": quasi_static,
-                "movements": agent.movements,
-                "legal_movements": agent.legal_movements,
-                "legal_rate": agent.legal_rate,
-            }
-        )
+        counts = {names.made: made, f"{names.good}_{names.made}": good}
+        _print_json({"file": str(file), **chosen, **counts, f"{names.good}_rate": good / made})
         return
     out.print(
-        f"{agent.movements:,} movements, {agent.legal_movements:,} of them legal "
-        f"({share(agent.legal_rate)}): {file}",
+        f"{made:,} {names.made}, {good:,} of them {names.good} ({share(good / made)}): {file}",
         highlight=False,
     )
 
@@ -188,9 +204,10 @@ def evaluate(
     body: OwnBody = None,
     as_json: AsJson = False,
 ) -> None:
-    """Test an agent on cases of Table I."""
+    """Test an agent on its task's cases: Table I, or objects on the palm's side."""
     loaded = load_agent(agent, env_id=env_id, body=body, seed=seed)
-    drawn = scenarios("table1", cases, seed, split=split, body=loaded.body)
+    task = task_of(loaded.env_id)
+    drawn = scenarios(task.protocol, cases, seed, split=split, body=loaded.body)
     result = run_evaluation(
         loaded.agent,
         loaded.env_id,
@@ -199,15 +216,16 @@ def evaluate(
         progress_bar=True,
         **loaded.env_kwargs,
     )
-    rates = tally(result)
+    rates = tally(result, task)
     if as_json:
         _print_json(
             {"agent": agent, "env_id": loaded.env_id, "seed": seed, "split": split, **rates}
         )
         return
-    table = rates_table(f"{cases:,} cases of Table I, 95 % Wilson intervals")
-    table.add_row(agent, *rate_cells(rates))
-    table.add_row("the paper", *rate_cells(paper_tally()))
+    table = rates_table(f"{cases:,} {task.cases}, 95 % Wilson intervals", task=task)
+    table.add_row(Path(agent).name, *rate_cells(rates, task))
+    if task.paper is not None:
+        table.add_row("the paper", *rate_cells(paper_tally()))
     _print(table)
 
 
@@ -217,14 +235,15 @@ def compare(
     report: Annotated[
         Path | None, typer.Option(help="Folder for index.html and results.json.")
     ] = None,
-    task: Annotated[Literal["reach"], typer.Option(help="Task.")] = "reach",
-    agents: Annotated[
-        str | None,
-        typer.Option(help=f"Some of {','.join(c.key for c in CONTENDERS)}; all if not given."),
+    other_report: Annotated[
+        str | None, typer.Option(help="The other task's page, from there, to link to.")
     ] = None,
+    task: TaskName = "reach",
+    agents: Agents = None,
     seeds: Seeds = 1,
     cases: Cases = 1_000,
     movements: Movements = 20_000,
+    babbles: Babbles = 1_000,
     body: BodyName = "paper",
     as_json: AsJson = False,
 ) -> None:
@@ -232,7 +251,15 @@ def compare(
     if report is not None:
         _check_folder_of(report)
         figures.check_format(report / "figure.svg")  # A missing extra shows now.
-    settings = Settings(body=body, seeds=seeds, cases=cases, movements=movements, progress_bar=True)
+    settings = Settings(
+        task=task,
+        body=body,
+        seeds=seeds,
+        cases=cases,
+        movements=movements,
+        babbles=babbles,
+        progress_bar=True,
+    )
     keys = None if agents is None else [key.strip() for key in agents.split(",")]
     comparison = run_comparison(keys, settings, say=_say)
     written: list[Path] = []
@@ -241,8 +268,9 @@ def compare(
         command = ["gym-babble", "compare", "--task", task, "--report", str(report)]
         command += ["--agents", agents] if agents is not None else []
         command += ["--seeds", str(seeds), "--cases", str(cases)]
-        command += ["--movements", str(movements), "--body", body]
-        written = write_report(comparison, report, shlex.join(command))
+        many = movements if task == "reach" else babbles
+        command += [f"--{comparison.task.made}", str(many), "--body", body]
+        written = write_report(comparison, report, shlex.join(command), other_report)
     if as_json:
         _print_json(comparison.to_json())
     else:

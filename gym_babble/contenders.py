@@ -10,10 +10,20 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import gymnasium
 
-from gym_babble.agents import HebbBabbling, Oracle, RandomBabbling, Scripted
+from gym_babble.agents import (
+    GraspRandom,
+    GraspScripted,
+    HebbBabbling,
+    HebbGrasping,
+    Oracle,
+    RandomBabbling,
+    Scripted,
+)
+from gym_babble.agents.grasping import BABBLE_S
 from gym_babble.config import Config, config_json
 from gym_babble.evaluation import evaluate
 from gym_babble.scenarios import scenarios
+from gym_babble.tasks import task_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -22,18 +32,22 @@ if TYPE_CHECKING:
     from gym_babble.agents.base import Agent
     from gym_babble.config import BodyLike
 
-__all__ = ["CONTENDERS", "Contender", "CurvePoint", "Settings", "Trained"]
+__all__ = ["CONTENDERS", "Contender", "CurvePoint", "Learning", "Settings", "Trained"]
 
 PATTERN = "BabbleReachPattern-v0"
+GRASPING = "BabbleGrasp-v0"
 VALIDATION_CASES = 200
-# Legal movements after which a Hebb agent's curve has a point; multiples of 250, its learning step.
-MILESTONES = (250, 500, 1_000, 2_000, 5_000, 10_000, 20_000)
+# What a Hebb agent has learnt from when its curve has a point; multiples of its learning step.
+LEGAL_MOVEMENTS = (250, 500, 1_000, 2_000, 5_000, 10_000, 20_000)
+KEPT_BABBLES = (50, 100, 250, 500, 1_000)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
     """What a comparison is made with."""
 
+    task: str = "reach"
+    """"reach" or "grasp"."""
     body: BodyLike = "paper"
     """Body and task."""
     seeds: int = 1
@@ -41,7 +55,9 @@ class Settings:
     cases: int = 1_000
     """Tests of each seed."""
     movements: int = 20_000
-    """Legal movements that the Hebb agents learn from."""
+    """Legal movements that the Hebb agents of reaching learn from."""
+    babbles: int = 1_000
+    """Babbles that the Hebb agent of grasping learns from."""
     ppo_steps: int | None = None
     """Steps that PPO learns from; the preset's if None."""
     progress_bar: bool = False
@@ -60,21 +76,27 @@ class CurvePoint(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Trained:
-    """An agent, where it acts, and what learning took."""
+class Learning:
+    """What learning took."""
 
-    agent: Agent
-    env_id: str = PATTERN
-    env_kwargs: dict[str, Any] = field(default_factory=dict)
     movements: int = 0
-    """Movements babbled, or episodes ended while it learnt."""
+    """Movements or babbles made, or episodes ended while it learnt."""
     legal_movements: int | None = None
-    """Of these the legal ones, which a Hebb agent learns from."""
+    """Of these the legal or kept ones, which a Hebb agent learns from."""
     control_steps: int = 0
-    """Control steps simulated; a movement counts with its whole length."""
+    """Control steps simulated; a movement or babble counts with its whole length."""
     seconds: float = 0.0
     """Clock time of learning [s]."""
     curve: tuple[CurvePoint, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trained(Learning):
+    """An agent, where it acts, and what learning took."""
+
+    agent: Agent
+    env_id: str
+    env_kwargs: dict[str, Any] = field(default_factory=dict)
     while_acting: Callable[[], AbstractContextManager[None]] = nullcontext
     """What to enter for its test."""
 
@@ -88,51 +110,76 @@ class Contender:
     title: str
     detail: str
     """What it decides on, or how."""
-    train: Callable[[Settings, int], Trained]
+    train: Callable[[Settings, int], Trained] | None
+    """How it learns with a seed; None for the stored study of its task."""
     slow_test: bool = False
     """Whether its test takes more than a moment."""
+    asked_for: bool = False
+    """Whether it takes part only when it is named."""
 
 
 class _Course:
     """Keeps clock and learning curve of a Hebb agent while it babbles."""
 
-    def __init__(self, settings: Settings) -> None:
-        self._body = settings.body
-        self._cases = scenarios("table1", VALIDATION_CASES, split="validation", body=settings.body)
-        self._marks = {*MILESTONES, settings.movements}
-        self._steps = _movement_steps(settings.body)
+    def __init__(self, settings: Settings, env_id: str, marks: set[int], steps: int) -> None:
+        protocol = task_of(env_id).protocol
+        self._cases = scenarios(protocol, VALIDATION_CASES, split="validation", body=settings.body)
+        self._body, self._env_id = settings.body, env_id
+        self._marks, self._steps = marks, steps
         self._began = perf_counter()
         self.seconds = 0.0
         self.curve: list[CurvePoint] = []
 
-    def __call__(self, agent: HebbBabbling) -> None:
+    def note(self, agent: Agent, made: int, good: int) -> None:
+        """To be called as it learns, with what it has made and how many of these were good."""
         self.seconds += perf_counter() - self._began
-        if agent.legal_movements in self._marks:
-            success = evaluate(agent, PATTERN, self._cases, body=self._body).rate("success")
-            self.curve.append(CurvePoint(agent.movements * self._steps, self.seconds, success))
+        if good in self._marks:
+            success = evaluate(agent, self._env_id, self._cases, body=self._body).rate("success")
+            self.curve.append(CurvePoint(made * self._steps, self.seconds, success))
         self._began = perf_counter()
 
-
-def _movement_steps(body: BodyLike) -> int:
-    return Config.from_json(config_json(body)).movement_steps
+    def trained(self, agent: Agent, made: int, good: int) -> Trained:
+        """What came out."""
+        return Trained(
+            agent=agent,
+            env_id=self._env_id,
+            movements=made,
+            legal_movements=good,
+            control_steps=made * self._steps,
+            seconds=self.seconds,
+            curve=tuple(self.curve),
+        )
 
 
 def _hebb(variant: str) -> Callable[[Settings, int], Trained]:
     def train(settings: Settings, seed: int) -> Trained:
-        env = gymnasium.make(PATTERN, body=settings.body)
-        agent = HebbBabbling(env, variant, seed=seed)
-        course = _Course(settings)
-        agent.learn(settings.movements, progress_bar=settings.progress_bar, callback=course)
-        return Trained(
-            agent=agent,
-            movements=agent.movements,
-            legal_movements=agent.legal_movements,
-            control_steps=agent.movements * _movement_steps(settings.body),
-            seconds=course.seconds,
-            curve=tuple(course.curve),
+        agent = HebbBabbling(gymnasium.make(PATTERN, body=settings.body), variant, seed=seed)
+        steps = _config(settings).movement_steps
+        course = _Course(settings, PATTERN, {*LEGAL_MOVEMENTS, settings.movements}, steps)
+        agent.learn(
+            settings.movements,
+            progress_bar=settings.progress_bar,
+            callback=lambda agent: course.note(agent, agent.movements, agent.legal_movements),
         )
+        return course.trained(agent, agent.movements, agent.legal_movements)
 
     return train
+
+
+def _hebb_grasping(settings: Settings, seed: int) -> Trained:
+    agent = HebbGrasping(gymnasium.make(GRASPING, body=settings.body), seed=seed)
+    steps = round(BABBLE_S / _config(settings).grasp.control_period_s)
+    course = _Course(settings, GRASPING, {*KEPT_BABBLES, settings.babbles}, steps)
+    agent.learn(
+        settings.babbles,
+        progress_bar=settings.progress_bar,
+        callback=lambda agent: course.note(agent, agent.babbles, agent.kept),
+    )
+    return course.trained(agent, agent.babbles, agent.kept)
+
+
+def _config(settings: Settings) -> Config:
+    return Config.from_json(config_json(settings.body))
 
 
 def _ppo(preset: str) -> Callable[[Settings, int], Trained]:
@@ -162,31 +209,68 @@ def _ppo(preset: str) -> Callable[[Settings, int], Trained]:
     return train
 
 
-def _random(settings: Settings, seed: int) -> Trained:
-    return Trained(agent=RandomBabbling(gymnasium.make(PATTERN, body=settings.body), seed=seed))
+def _untaught(
+    make: Callable[[Any, int], Agent], env_id: str = PATTERN
+) -> Callable[[Settings, int], Trained]:
+    """An agent made of an environment and a seed, which needs no learning."""
+
+    def train(settings: Settings, seed: int) -> Trained:
+        return Trained(agent=make(gymnasium.make(env_id, body=settings.body), seed), env_id=env_id)
+
+    return train
 
 
-def _scripted(settings: Settings, seed: int) -> Trained:
-    del seed
-    return Trained(agent=Scripted(gymnasium.make(PATTERN, body=settings.body)))
-
-
-def _oracle(settings: Settings, seed: int) -> Trained:
-    del seed
-    env = gymnasium.make(PATTERN, body=settings.body)
-    return Trained(agent=Oracle(env, threads=os.cpu_count() or 1))
-
-
-CONTENDERS = (
-    Contender("hebb-paper", "Hebb paper", "obstacle only", _hebb("paper")),
-    Contender("hebb-conjunctive", "Hebb conjunctive", "obstacle × eye", _hebb("conjunctive")),
-    Contender("ppo-obstacle", "PPO pattern", "obstacle only", _ppo("pattern_obstacle")),
-    Contender("ppo-pattern", "PPO pattern", "all senses", _ppo("pattern")),
-    Contender(
-        "ppo-posture", "PPO delta_posture", "all senses", _ppo("delta_posture"), slow_test=True
+CONTENDERS = {
+    "reach": (
+        Contender("hebb-paper", "Hebb paper", "obstacle only", _hebb("paper")),
+        Contender("hebb-conjunctive", "Hebb conjunctive", "obstacle × eye", _hebb("conjunctive")),
+        Contender("ppo-obstacle", "PPO pattern", "obstacle only", _ppo("pattern_obstacle")),
+        Contender("ppo-pattern", "PPO pattern", "all senses", _ppo("pattern")),
+        Contender(
+            "ppo-posture", "PPO delta_posture", "all senses", _ppo("delta_posture"), slow_test=True
+        ),
+        Contender(
+            "random",
+            "Random",
+            "babbles on",
+            _untaught(lambda env, seed: RandomBabbling(env, seed=seed)),
+        ),
+        Contender(
+            "scripted", "Scripted", "to the shoulder", _untaught(lambda env, _: Scripted(env))
+        ),
+        Contender(
+            "oracle",
+            "Oracle",
+            "tries 99",
+            _untaught(lambda env, _: Oracle(env, threads=os.cpu_count() or 1)),
+            slow_test=True,
+        ),
     ),
-    Contender("random", "Random", "babbles on", _random),
-    Contender("scripted", "Scripted", "to the shoulder", _scripted),
-    Contender("oracle", "Oracle", "tries 99", _oracle, slow_test=True),
-)
-"""The rows, in their order."""
+    "grasp": (
+        Contender("hebb-paper", "Hebb paper", "eye, fovea", _hebb_grasping, slow_test=True),
+        Contender("ppo-stored", "PPO delta_posture", "stored study", None),
+        Contender(
+            "ppo-posture",
+            "PPO delta_posture",
+            "all senses",
+            _ppo("grasp"),
+            slow_test=True,
+            asked_for=True,
+        ),
+        Contender(
+            "scripted",
+            "Scripted",
+            "knows geometry",
+            _untaught(lambda env, _: GraspScripted(env), GRASPING),
+            slow_test=True,
+        ),
+        Contender(
+            "random",
+            "Random",
+            "any action",
+            _untaught(lambda env, seed: GraspRandom(env, seed=seed), GRASPING),
+            slow_test=True,
+        ),
+    ),
+}
+"""The rows of each task, in their order."""

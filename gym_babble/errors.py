@@ -11,6 +11,7 @@ __all__ = [
     "MissingExtraError",
     "ScenarioError",
     "SnapshotError",
+    "StudyError",
 ]
 
 
@@ -36,6 +37,10 @@ class SnapshotError(BabbleError, ValueError):
 
 class AgentFileError(BabbleError, ValueError):
     """A file is not a learned agent of this package."""
+
+
+class StudyError(BabbleError, ValueError):
+    """A stored study does not fit what is compared."""
 
 
 class MissingExtraError(BabbleError, ImportError):

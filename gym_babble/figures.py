@@ -11,7 +11,6 @@ import numpy as np
 
 from gym_babble import _core
 from gym_babble.errors import ConfigError, MissingExtraError
-from gym_babble.tables import PAPER
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -50,6 +49,7 @@ LINES = {
     "ppo-obstacle": "#e0a050",
     "ppo-pattern": "#c2571a",
     "ppo-posture": "#7a2e0b",
+    "ppo-stored": "#c2571a",
 }
 STYLE: Any = {
     "font.size": 9,
@@ -355,6 +355,7 @@ def learning_curves(comparison: Comparison) -> Figure:
     from matplotlib.ticker import NullFormatter
 
     figure, (left, right) = _axes((9.5, 4.2), 2, sharey=True)
+    paper = comparison.task.paper
     for result in comparison.results:
         colour = LINES.get(result.contender.key, INK)
         name = f"{result.contender.title}, {result.contender.detail}"
@@ -368,7 +369,8 @@ def learning_curves(comparison: Comparison) -> Figure:
             ):
                 ax.plot(x, success, ".-", color=colour, lw=1.5, label=None if i else name)
     for ax, label in ((left, "control steps simulated"), (right, "seconds of learning")):
-        ax.axhline(PAPER["success"] / 1000, color=FAINT, lw=1, ls=":")
+        if paper is not None:
+            ax.axhline(paper["success"] / sum(paper.values()), color=FAINT, lw=1, ls=":")
         ax.set(xscale="log", xlabel=label, ylim=(0, 1))
         ax.xaxis.set_minor_formatter(NullFormatter())
         ax.grid(axis="y", color="#e4e7eb", lw=0.6)

@@ -12,18 +12,31 @@ from typing import TYPE_CHECKING, Any
 import gymnasium
 from gymnasium import spaces
 
-from gym_babble.agents import HebbBabbling, Oracle, RandomBabbling, Scripted
+from gym_babble.agents import (
+    GraspRandom,
+    GraspScripted,
+    HebbBabbling,
+    HebbGrasping,
+    Oracle,
+    RandomBabbling,
+    Scripted,
+)
 from gym_babble.errors import AgentFileError, ConfigError, MissingExtraError
 from gym_babble.registration import ENVIRONMENTS
+from gym_babble.tasks import REACH, task_of
 
 if TYPE_CHECKING:
     from gym_babble.agents.base import Agent
     from gym_babble.config import BodyLike
 
-__all__ = ["REFERENCES", "LoadedAgent", "check_env_id", "load_agent"]
+__all__ = ["REFERENCES", "LoadedAgent", "load_agent"]
 
 REFERENCES = ("random", "scripted", "oracle")
 PATTERN = "BabbleReachPattern-v0"
+GRASPING = "BabbleGrasp-v0"
+# Safetensors begins with its metadata, and the core writes what kind of agent it is as their key.
+GRASPING_KEY = b'"gym_babble.grasp"'
+KEY_WITHIN = 64
 
 
 @dataclass(frozen=True)
@@ -42,9 +55,11 @@ def load_agent(
     """An agent by name, or from a file.
 
     Args:
-        name: "random", "scripted", "oracle", a file that `HebbBabbling.save` wrote, or a zip that
-            stable-baselines3 wrote. The latter holds pickled Python: load only those you trust.
-        env_id: Environment to act in; BabbleReachPattern-v0 if not given, but a zip needs one.
+        name: "random", "scripted", "oracle" (of reaching alone), a file that a Hebb agent's `save`
+            wrote, or a zip that stable-baselines3 wrote. The latter holds pickled Python: load only
+            those you trust.
+        env_id: Environment to act in; BabbleReachPattern-v0, or BabbleGrasp-v0 for an agent that
+            has learnt to grasp, if not given, but a zip needs one.
         body: Body and task; the one it learnt on, or "paper", if not given.
         seed: Seed of the random agent.
 
@@ -54,7 +69,7 @@ def load_agent(
         ConfigError: There is no such environment or body, or the agent cannot act in it.
     """
     if env_id is not None:
-        check_env_id(env_id)
+        task_of(env_id)
     if name in REFERENCES:
         return _reference(name, env_id or PATTERN, "paper" if body is None else body, seed)
     path = Path(name)
@@ -62,30 +77,30 @@ def load_agent(
         raise FileNotFoundError(f"{name}: no such file; agents by name are {', '.join(REFERENCES)}")
     if zipfile.is_zipfile(path):
         return _stable_baselines(path, env_id, "paper" if body is None else body)
-    return _hebb(path, env_id or PATTERN, body)
-
-
-def check_env_id(env_id: str) -> None:
-    """Raises ConfigError if there is no such environment."""
-    known = [row.id for row in ENVIRONMENTS]
-    if env_id not in known:
-        raise ConfigError(f"{env_id!r} is not an environment; there are {', '.join(known)}")
+    return _hebb(path, env_id, body)
 
 
 def _reference(name: str, env_id: str, body: BodyLike, seed: int) -> LoadedAgent:
     env = gymnasium.make(env_id, body=body)
+    of_reaching = task_of(env_id) == REACH
+    agent: Agent
     if name == "random":
-        return LoadedAgent(RandomBabbling(env, seed=seed), env_id, body)
-    if name == "scripted":
-        return LoadedAgent(Scripted(env), env_id, body)
-    return LoadedAgent(Oracle(env, threads=os.cpu_count() or 1), env_id, body)
+        agent = RandomBabbling(env, seed=seed) if of_reaching else GraspRandom(env, seed=seed)
+    elif name == "scripted":
+        agent = Scripted(env) if of_reaching else GraspScripted(env)
+    else:
+        agent = Oracle(env, threads=os.cpu_count() or 1)
+    return LoadedAgent(agent, env_id, body)
 
 
-def _hebb(path: Path, env_id: str, body: BodyLike | None) -> LoadedAgent:
-    agent = HebbBabbling.load(path)
+def _hebb(path: Path, env_id: str | None, body: BodyLike | None) -> LoadedAgent:
+    grasps = GRASPING_KEY in path.read_bytes()[:KEY_WITHIN]
+    kind: type[HebbBabbling | HebbGrasping] = HebbGrasping if grasps else HebbBabbling
+    env_id = env_id or (GRASPING if grasps else PATTERN)
+    agent = kind.load(path)
     if body is None:
         body = json.loads(agent.choices.task.config())
-    return LoadedAgent(HebbBabbling.load(path, gymnasium.make(env_id, body=body)), env_id, body)
+    return LoadedAgent(kind.load(path, gymnasium.make(env_id, body=body)), env_id, body)
 
 
 def _stable_baselines(path: Path, env_id: str | None, body: BodyLike) -> LoadedAgent:

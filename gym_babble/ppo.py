@@ -1,4 +1,4 @@
-"""Tuned PPO from stable-baselines3 on reaching, the baseline beside Hebb babbling.
+"""Tuned PPO from stable-baselines3 on both tasks, the baseline beside Hebb babbling.
 
 docs/baselines.md says how the settings were found and what they reach.
 """
@@ -19,6 +19,7 @@ from gym_babble.errors import ConfigError, MissingExtraError
 from gym_babble.evaluation import evaluate
 from gym_babble.sb3 import BabbleVecEnv, ProgressBar
 from gym_babble.scenarios import scenarios
+from gym_babble.tasks import task_of
 
 try:
     import torch
@@ -77,8 +78,21 @@ class Preset:
     policy: dict[str, Any] = field(default_factory=dict)
     """Its `policy_kwargs`."""
 
+    def to_json(self) -> dict[str, Any]:
+        """All of it in JSON's types; a rate that falls linearly as [first, last]."""
+        return {name: _plain(value) for name, value in vars(self).items()}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _plain(part) for name, part in value.items()}
+    if isinstance(value, LinearSchedule):
+        return [value.start, value.end]
+    return value.__name__ if isinstance(value, type) else value
+
 
 ALL_SENSES = ("eye", "obstacle", "hand", "arm", "stretch", "time")
+"""Those of reaching."""
 
 
 def _pattern(*senses: str) -> Preset:
@@ -119,9 +133,25 @@ PRESETS: dict[str, Preset] = {
         },
         policy={"activation_fn": torch.nn.ReLU, "net_arch": [128, 128], "log_std_init": -0.5},
     ),
+    "grasp": Preset(
+        env_id="BabbleGrasp-v0",
+        senses=("eye", "fovea", "arm", "hand", "stretch", "touch", "time"),
+        num_envs=128,
+        steps=3_000_000,
+        settings={
+            "n_steps": 64,
+            "batch_size": 1024,
+            "n_epochs": 5,
+            "learning_rate": LinearSchedule(1e-3, 0.0, 1.0),
+            "gamma": 0.99,
+            "gae_lambda": 0.95,
+        },
+        policy={"activation_fn": torch.nn.ReLU, "net_arch": [128, 128], "log_std_init": -0.5},
+    ),
 }
 """The presets by name. `pattern_obstacle` is given what the paper's agent sees,
-`pattern_eye_obstacle` what the conjunctive variant sees, the others every sense."""
+`pattern_eye_obstacle` what the conjunctive variant sees, the others every sense; `grasp` is for
+grasping in `delta_posture` control."""
 
 
 class CurvePoint(NamedTuple):
@@ -174,7 +204,8 @@ def train_ppo(
         seed: Seed of the networks and of the cases.
         steps: Steps of all environments together, rounded up to whole rollouts; the preset's if
             not given. In `pattern` control these are movements.
-        validation_cases: Cases of the learning curve, of split "validation"; 0 for no curve.
+        validation_cases: Cases of the learning curve, of the task's tests and split "validation"; 0
+            for no curve.
         validations: Points of the learning curve.
         progress_bar: Show a bar with the time left.
         callback: A callback of stable-baselines3 of your own.
@@ -184,11 +215,12 @@ def train_ppo(
     """
     chosen = _preset(preset)
     _check(steps, validation_cases, validations)
+    protocol = task_of(chosen.env_id).protocol
     with one_thread():
         env = BabbleVecEnv(chosen.env_id, chosen.num_envs, body=body, **chosen.env_kwargs)
         model = _model(chosen, env, seed)
         cases = (
-            scenarios("table1", validation_cases, split="validation", body=body)
+            scenarios(protocol, validation_cases, split="validation", body=body)
             if validation_cases
             else []
         )

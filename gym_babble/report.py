@@ -7,45 +7,84 @@ import os
 from base64 import b64encode
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from gym_babble import figures
-from gym_babble.agents import HebbBabbling
+from gym_babble.agents import HebbBabbling, HebbGrasping
+from gym_babble.compare import Played
 from gym_babble.doctor import versions
 from gym_babble.film import contact_sheet, png, record
 from gym_babble.loading import LoadedAgent
 from gym_babble.reproduce import starts_without_case, switched, ways, weight_sets
 from gym_babble.scenarios import scenarios
-from gym_babble.tables import OUTCOMES, paper_tally, share, tally
+from gym_babble.table2 import grasp_ways, sights
+from gym_babble.tables import paper_tally, share
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from gym_babble.compare import Comparison, Result
-    from gym_babble.scenarios import Scenario
+    from gym_babble.film import Film
+    from gym_babble.scenarios import GraspScenario, Scenario
+    from gym_babble.tasks import Task
 
 __all__ = ["write_report"]
 
-HEAD = (
-    "agent",
-    "",
-    "success",
-    "collision",
-    "joint limit",
-    "timeout",
-    "movements",
-    "steps",
-    "clock",
-)
+
+class Words(NamedTuple):
+    """What the page of a task says."""
+
+    heading: str
+    lead: str
+    cases: str
+    meaning: str
+    """What the table's rates mean."""
+    learnt_from: str
+    """What its other numbers mean."""
 
 
-def write_report(comparison: Comparison, folder: Path, command: str) -> list[Path]:
+WORDS = {
+    "reach": Words(
+        heading="Reaching around an obstacle: Hebb babbling beside PPO",
+        lead="An arm learns to reach a target behind an obstacle: by motor babbling and a Hebb "
+        "rule, as Caligiore et al. (2008) modelled it, and by reinforcement learning. All agents "
+        "meet the same cases in the same simulation.",
+        cases="legal cases that no agent learnt from",
+        meaning="Legal means that a babbled movement solved the case: each can be solved.",
+        learnt_from="Movements: legal ones learnt from for Hebb, with the share of babbled "
+        "movements that were legal; episodes for PPO. Steps: control steps simulated while "
+        "learning, in millions; a whole movement counts with all of its steps.",
+    ),
+    "grasp": Words(
+        heading="Grasping an object: Hebb babbling beside PPO",
+        lead="An arm with a hand learns to reach for an object that it sees and to grasp it: by "
+        "motor babbling with the object in the hand and a Hebb rule, as Caligiore et al. (2008) "
+        "modelled it, and by reinforcement learning. All agents meet the same cases in the same "
+        "simulation.",
+        cases="objects on the palm's side of the arm that no agent learnt from",
+        meaning="Success: the hand has held the object without support for a second. Touch: any "
+        "part of arm or hand has touched the object, whatever came of it; of palm: the palm has.",
+        learnt_from="Babbles: those learnt from for Hebb, with the share of all babbles in which "
+        "the hand kept the object; episodes for PPO. Steps: control steps simulated while "
+        "learning, in millions; a babble counts with its 4 s.",
+    ),
+}
+FIG7_EVERY = 4
+"""A way of the paper's Fig. 7 drawn of so many."""
+
+
+def write_report(
+    comparison: Comparison, folder: Path, command: str, other: str | None = None
+) -> list[Path]:
     """Writes index.html and results.json into a folder, and returns both.
 
     Args:
         comparison: What to report.
         folder: Made if it is not there.
         command: The command that makes it again.
+        other: Where the other task's page is, seen from this one, to link to.
 
     Raises:
         MissingExtraError: matplotlib is not there.
@@ -53,94 +92,93 @@ def write_report(comparison: Comparison, folder: Path, command: str) -> list[Pat
     folder.mkdir(parents=True, exist_ok=True)
     results, page = folder / "results.json", folder / "index.html"
     results.write_text(json.dumps(comparison.to_json(), indent=2) + "\n", encoding="utf-8")
-    page.write_text(_page(comparison, command), encoding="utf-8")
+    page.write_text(_page(comparison, command, other), encoding="utf-8")
     return [page, results]
 
 
-def _page(comparison: Comparison, command: str) -> str:
+def _page(comparison: Comparison, command: str, other: str | None) -> str:
     style = Path(__file__).with_name("report.css").read_text(encoding="utf-8")
-    sections = (
-        _table(comparison),
-        _curves(comparison),
-        _movement(comparison),
-        *(_trajectories(comparison, key) for key in ("hebb-paper", "hebb-conjunctive")),
-        _weights(comparison),
-        _generators(),
-        _made(comparison, command),
-    )
+    task = comparison.task
+    sections = "".join(section(comparison) for section in SECTIONS[task.name])
     return (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>Reaching: Hebb babbling beside PPO</title>\n<style>\n{style}</style></head>\n"
-        f"<body><main>\n{_lead(comparison)}\n{''.join(sections)}</main></body></html>\n"
+        f"<title>{task.title}: Hebb babbling beside PPO</title>\n<style>\n{style}</style></head>\n"
+        f"<body><main>\n{_lead(comparison)}\n{_link(task, other)}{sections}"
+        f"{_made(comparison, command)}</main></body></html>\n"
     )
+
+
+def _link(task: Task, other: str | None) -> str:
+    if other is None:
+        return ""
+    (title,) = (words.heading for name, words in WORDS.items() if name != task.name)
+    return f'<p class="note">See also: <a href="{escape(other)}">{title}</a></p>\n'
 
 
 def _lead(comparison: Comparison) -> str:
+    task = comparison.task
     best = [
         f"{escape(result.contender.title)} ({escape(result.contender.detail)}) "
-        f"{share(result.pooled.rate('success'))}"
+        f"{share(result.rates['success']['rate'])}"
         for result in comparison.results
         if result.mean("movements")
     ]
-    found = f"Success here: {'; '.join(best)}; the paper .670." if best else ""
-    return (
-        "<h1>Reaching around an obstacle: Hebb babbling beside PPO</h1>\n"
-        '<p class="lead">An arm learns to reach a target behind an obstacle: by motor babbling and '
-        "a Hebb rule, as Caligiore et al. (2008) modelled it, and by reinforcement learning. All "
-        f"agents meet the same cases in the same simulation. {found}</p>"
-    )
+    paper = f"; the paper {share(paper_tally()['success']['rate'])}" if task.paper else ""
+    found = f"Success here: {'; '.join(best)}{paper}." if best else ""
+    words = WORDS[task.name]
+    return f'<h1>{words.heading}</h1>\n<p class="lead">{words.lead} {found}</p>'
 
 
 def _table(comparison: Comparison) -> str:
-    head = "".join(f"<th>{name}</th>" for name in HEAD)
-    paper = _row(
-        "the paper", "Table I", paper_tally(), ["20,000<small>legal ≈ .20</small>", "", ""]
+    task, settings = comparison.task, comparison.settings
+    names = [*task.outcomes, *("touch" if name == "reach" else "of palm" for name in task.facts)]
+    names = ["agent", "", *(name.replace("_", " ") for name in names), task.made, "steps", "clock"]
+    head = "".join(f"<th>{name}</th>" for name in names)
+    rows = ""
+    if task.paper is not None:
+        cells = ["20,000<small>legal ≈ .20</small>", "", ""]
+        paper = _row("the paper", "Table I", paper_tally(), task, cells)
+        rows = paper.replace("<tr>", "<tr class=paper>")
+    rows += "".join(_result_row(result) for result in comparison.results)
+    notes = "".join(
+        f'<p class="note">{escape(note[0].upper() + note[1:])}.</p>' for note in comparison.notes
     )
-    rows = "".join(_result_row(result) for result in comparison.results)
-    left_out = "".join(
-        f'<p class="note">Left out: {escape(key)}: {escape(why)}.</p>'
-        for key, why in comparison.skipped.items()
-    )
-    key = "".join(f'<i class="{name}"></i>{name.replace("_", " ")}' for name in OUTCOMES)
-    settings = comparison.settings
+    key = "".join(f'<i class="{name}"></i>{name.replace("_", " ")}' for name in task.outcomes)
+    words = WORDS[task.name]
     return (
-        f"<h2>Table I</h2>\n<p>{settings.cases:,} legal cases that no agent learnt from"
+        f"<h2>{'Table I' if task.paper else 'Success'}</h2>\n<p>{settings.cases:,} {words.cases}"
         f"{f', for each of {settings.seeds} seeds' if settings.seeds > 1 else ''}; under each rate "
-        "its 95 % Wilson interval. Legal means that a babbled movement solved the case: each can "
-        "be solved."
-        f'</p>\n<div class="scroll"><table><tr>{head}</tr>\n'
-        f"{paper.replace('<tr>', '<tr class=paper>')}{rows}</table></div>\n"
+        f"its 95 % Wilson interval. {words.meaning}"
+        f'</p>\n<div class="scroll"><table><tr>{head}</tr>\n{rows}</table></div>\n'
         f'<p class="note key">{key}</p>\n'
-        '<p class="note">Movements: legal ones learnt from for Hebb, with the share of babbled '
-        "movements that were legal; episodes for PPO. Steps: control steps simulated while "
-        "learning, in millions; a whole movement counts with all of its steps. Clock: seconds of "
+        f'<p class="note">{words.learnt_from} Clock: seconds of '
         "learning on this machine. With several seeds, means.</p>\n"
-        f"{left_out}"
+        f"{notes}"
     )
 
 
 def _result_row(result: Result) -> str:
-    cells = ["", "", ""]
+    task, cells = result.task, ["", "", ""]
     if result.mean("movements"):
         movements = f"{result.mean('movements'):,.0f}"
         if result.legal_rate is not None:
             legal = result.mean("legal_movements")
-            movements = f"{legal:,.0f}<small>legal {share(result.legal_rate)}</small>"
+            movements = f"{legal:,.0f}<small>{task.good} {share(result.legal_rate)}</small>"
         steps = f"{result.mean('control_steps') / 1e6:.1f} M"
         cells = [movements, steps, f"{result.mean('seconds'):.0f} s"]
-    return _row(result.contender.title, result.contender.detail, tally(result.pooled), cells)
+    return _row(result.contender.title, result.contender.detail, result.rates, task, cells)
 
 
-def _row(title: str, detail: str, rates: dict[str, Any], cells: list[str]) -> str:
+def _row(title: str, detail: str, rates: dict[str, Any], task: Task, cells: list[str]) -> str:
     bar = "".join(
         f'<span class="{name}" style="width:{100 * rates[name]["rate"]:.1f}%"></span>'
-        for name in OUTCOMES
+        for name in task.outcomes
     )
     shares = "".join(
         f"<td>{share(rates[name]['rate'])}"
         f"<small>{share(rates[name]['low'])}–{share(rates[name]['high'])}</small></td>"
-        for name in OUTCOMES
+        for name in (*task.outcomes, *task.facts)
     )
     return (
         f"<tr><td>{escape(title)}<small>{escape(detail)}</small></td>"
@@ -152,51 +190,89 @@ def _row(title: str, detail: str, rates: dict[str, Any], cells: list[str]) -> st
 def _curves(comparison: Comparison) -> str:
     if not any(trained.curve for result in comparison.results for trained in result.trained):
         return ""
+    dotted = " The dotted line is the paper's .67 on its tests." if comparison.task.paper else ""
     return "<h2>While learning</h2>\n" + _figure(
         _svg(figures.learning_curves(comparison)),
-        "Success on 200 validation cases, which are none of the tests. The dotted line is the "
-        "paper's .67 on its tests. A curve begins at its first measured point.",
+        f"Success on 200 validation cases, which are none of the tests.{dotted} A curve begins at "
+        "its first measured point.",
     )
 
 
-def _movement(comparison: Comparison) -> str:
-    """A success of the first agent of the table, to be looked at."""
-    result = comparison.results[0]
-    trained = result.trained[0]
-    body = comparison.settings.body
-    cases = scenarios("table1", comparison.settings.cases, body=body)
+def _filmed(
+    comparison: Comparison, worth: Callable[[Any], float]
+) -> tuple[Played, Any, Film, bytes] | None:
+    """A success of the first agent of the table that played, the one most worth looking at.
+
+    The result, the case, a film of it, and what the eye saw before.
+    """
+    played = [result for result in comparison.results if isinstance(result, Played)]
+    if not played:
+        return None
+    result = played[0]
+    trained, body = result.trained[0], comparison.settings.body
+    cases = scenarios(comparison.task.protocol, comparison.settings.cases, body=body)
     good = [
         case
         for case, outcome in zip(cases, result.tests[0].outcomes, strict=True)
         if outcome == "success"
     ]
-    case = min(good or cases, key=_off_stage)
+    case = max(good or cases, key=worth)
     loaded = LoadedAgent(trained.agent, trained.env_id, body, trained.env_kwargs)
     film = record(loaded, options={"scenario": case}, size=600)
-    near = [frame[60:400, 80:420] for frame in film.frames]  # The arm keeps to the middle.
     eye = record(loaded, options={"scenario": case}, camera="eye", size=630).frames[0]
+    return result, case, film, png(eye)
+
+
+def _movement(comparison: Comparison) -> str:
+    filmed = _filmed(comparison, _on_stage)
+    if filmed is None:
+        return ""
+    result, case, film, eye = filmed
+    near = [frame[60:400, 80:420] for frame in film.frames]  # The arm keeps to the middle.
     return (
         f"<h2>A movement</h2>\n<p>{escape(result.contender.title)} on case {case['index']}: "
         f"{film.outcome.replace('_', ' ')}.</p>\n"
         '<div class="photos">'
-        + _figure(
-            _png(png(eye)), "What the eye sees before: 630 × 630 pixels, 120°, on the target."
-        )
+        + _figure(_png(eye), "What the eye sees before: 630 × 630 pixels, 120°, on the target.")
         + _figure(_png(png(contact_sheet(near))), "The movement, row by row.")
         + "</div>\n"
     )
 
 
-def _off_stage(case: Scenario) -> float:
-    """How little a case has to show: a short way, or one far from the middle of the picture."""
+def _on_stage(case: Scenario) -> float:
+    """How much a case has to show: a long way near the middle of the picture."""
     start, target = np.array(case["start"]), np.array(case["target"])
     middle = 0.5 * (start + target)
-    return float(np.linalg.norm(middle - (0.0, 0.3)) - np.linalg.norm(target - start))
+    return float(np.linalg.norm(target - start) - np.linalg.norm(middle - (0.0, 0.3)))
+
+
+def _grasp(comparison: Comparison) -> str:
+    filmed = _filmed(comparison, _size)
+    if filmed is None:
+        return ""
+    result, case, film, eye = filmed
+    return (
+        f"<h2>A grasp</h2>\n<p>{escape(result.contender.title)} on case {case['index']}: "
+        f"{film.outcome.replace('_', ' ')}.</p>\n"
+        '<div class="photos">'
+        + _figure(_png(eye), "What the eye sees before: 630 × 630 pixels, 120°, on the object.")
+        + _figure(_png(png(contact_sheet(film.frames))), "The grasp, row by row.")
+        + "</div>\n"
+    )
+
+
+def _size(case: GraspScenario) -> float:
+    """How much a case has to show: a big object."""
+    return case["diameter"]
+
+
+def _trajectories_of(key: str) -> Callable[[Comparison], str]:
+    return lambda comparison: _trajectories(comparison, key)
 
 
 def _trajectories(comparison: Comparison, key: str) -> str:
     result = comparison.result(key)
-    if result is None:
+    if not isinstance(result, Played):
         return ""
     body, agent = comparison.settings.body, result.trained[0].agent
     cases = scenarios("fig4", body=body)
@@ -214,9 +290,10 @@ def _trajectories(comparison: Comparison, key: str) -> str:
 
 def _weights(comparison: Comparison) -> str:
     result = comparison.result("hebb-paper")
-    if result is None or not isinstance(result.trained[0].agent, HebbBabbling):
+    agent = result.trained[0].agent if isinstance(result, Played) else None
+    if not isinstance(agent, HebbBabbling):
         return ""
-    sets = weight_sets(result.trained[0].agent)
+    sets = weight_sets(agent)
     return "<h2>Weights (Fig. 5)</h2>\n" + _figure(
         _svg(figures.fig5(sets)),
         "Weights from input neurons to the output map. The neurons fall into two compact sets: one "
@@ -225,7 +302,7 @@ def _weights(comparison: Comparison) -> str:
     )
 
 
-def _generators() -> str:
+def _generators(_: Comparison) -> str:
     return "<h2>Pattern generators (Fig. 2)</h2>\n" + _figure(
         _svg(figures.fig2()),
         "The path of a movement for several b1, with b2 = 1 − b1, and the same between a hand and "
@@ -233,12 +310,46 @@ def _generators() -> str:
     )
 
 
+def _hands(comparison: Comparison) -> str:
+    """Where seed 0's Hebb agent goes, and what it has learnt."""
+    result = comparison.result("hebb-paper")
+    agent = result.trained[0].agent if isinstance(result, Played) else None
+    if not isinstance(agent, HebbGrasping):
+        return ""
+    body = comparison.settings.body
+    ways = grasp_ways(agent, scenarios("fig7", body=body)[::FIG7_EVERY], body)
+    return (
+        "<h2>Ways of the hand (Fig. 7)</h2>\n"
+        + _figure(
+            _svg(figures.fig7(ways)),
+            "Final portions of the palm's ways to 12 places of each object, which lie all around. "
+            "Thin: touched; bold: grasped; dotted grey: missed. Circles are the objects in their "
+            "size.",
+        )
+        + "<h2>Activation and weights (Fig. 8)</h2>\n"
+        + _figure(
+            _svg(figures.fig8(agent)),
+            "Top: the arm's map for an object seen, and the weights from one neuron of the eye's "
+            "map. Bottom: weights from the fovea to the neurons of the small and of the big "
+            "object's hand.",
+        )
+    )
+
+
+def _sight(comparison: Comparison) -> str:
+    return "<h2>What the eye sees</h2>\n" + _figure(
+        _svg(figures.sight(sights(comparison.settings.body))),
+        "Objects of each size: the eye's view, the fovea in its middle, and the edges there, which "
+        "tell the hand the size.",
+    )
+
+
 def _made(comparison: Comparison, command: str) -> str:
-    settings = comparison.settings
+    settings, protocol = comparison.settings, comparison.task.protocol
     facts = {
         "body": comparison.to_json()["body"],
         "seeds": ", ".join(map(str, range(settings.seeds))),
-        "cases": f"protocol table1, split test, {settings.cases:,} for each seed",
+        "cases": f"protocol {protocol}, split test, {settings.cases:,} for each seed",
         "processors": str(os.cpu_count()),
         "time": f"{comparison.seconds:.0f} s in all",
         **{name: found or "not installed" for name, found in versions().items()},
@@ -264,3 +375,18 @@ def _svg(figure: Any) -> str:
 
 def _png(data: bytes) -> str:
     return f"data:image/png;base64,{b64encode(data).decode()}"
+
+
+SECTIONS: dict[str, tuple[Callable[[Comparison], str], ...]] = {
+    "reach": (
+        _table,
+        _curves,
+        _movement,
+        _trajectories_of("hebb-paper"),
+        _trajectories_of("hebb-conjunctive"),
+        _weights,
+        _generators,
+    ),
+    "grasp": (_table, _curves, _grasp, _hands, _sight),
+}
+"""What the page of a task shows between its head and how it was made."""

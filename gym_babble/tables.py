@@ -8,22 +8,25 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gym_babble.evaluation import wilson
+from gym_babble.tasks import REACH
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from rich.table import Table
 
     from gym_babble.evaluation import Evaluation
+    from gym_babble.tasks import Task
 
 __all__ = [
     "OUTCOMES",
-    "PAPER",
+    "counted",
     "doctor_table",
     "info_tables",
     "paper_tally",
     "plain_table",
     "rate_cells",
+    "rate_heads",
     "rates_table",
     "share",
     "t_interval",
@@ -32,29 +35,32 @@ __all__ = [
     "tally",
 ]
 
-OUTCOMES = ("success", "collision", "joint_limit", "timeout")
-"""How an episode of reaching can end; each has exactly one."""
-
-PAPER = {"success": 670, "collision": 228, "joint_limit": 102, "timeout": 0}
-"""Table I of the paper: counts of 1,000 tests. Of its babbled movements about .20 were legal."""
+OUTCOMES = REACH.outcomes
+"""How an episode of reaching can end."""
 
 # 97.5 % points of Student's t for 1, 2, ... 9 degrees of freedom.
 T_QUANTILES = (12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646, 2.3060, 2.2622)
 
 
-def tally(result: Evaluation) -> dict[str, Any]:
-    """Number of cases, and for each outcome count, rate and 95 % Wilson interval."""
-    n = len(result.outcomes)
-    return {"cases": n, **{name: _counted(result.count(name), n) for name in OUTCOMES}}
+def tally(result: Evaluation, task: Task = REACH) -> dict[str, Any]:
+    """Number of cases; of each outcome and fact count, rate and 95 % Wilson interval."""
+    counts = {name: result.count(name) for name in task.outcomes}
+    counts |= {name: sum(result.facts[name]) for name in task.facts}
+    return counted(counts, len(result.outcomes))
 
 
 def paper_tally() -> dict[str, Any]:
     """The paper's Table I in the form of `tally`."""
-    n = sum(PAPER.values())
-    return {"cases": n, **{name: _counted(count, n) for name, count in PAPER.items()}}
+    assert REACH.paper is not None
+    return counted(REACH.paper, sum(REACH.paper.values()))
 
 
-def _counted(count: int, n: int) -> dict[str, Any]:
+def counted(counts: Mapping[str, int], n: int) -> dict[str, Any]:
+    """Counts among `n` cases in the form of `tally`."""
+    return {"cases": n, **{name: _rate(count, n) for name, count in counts.items()}}
+
+
+def _rate(count: int, n: int) -> dict[str, Any]:
     low, high = wilson(count, n)
     return {"count": count, "rate": count / n, "low": low, "high": high}
 
@@ -85,9 +91,19 @@ def share(rate: float) -> str:
     return f"{rate:.3f}".removeprefix("0")[:4]
 
 
-def rate_cells(rates: dict[str, Any]) -> list[str]:
-    """For each outcome of a `tally` a cell with the rate, and under it the interval."""
-    return [f"{share(rates[name]['rate'])}\n{_interval(rates[name])}" for name in OUTCOMES]
+def rate_heads(task: Task = REACH, between: str = " ") -> list[str]:
+    """Heads of the columns of `rate_cells`, with something `between` words."""
+    touches = ["any touch\n[dim]of palm[/]"] if task.facts else []
+    return [*(name.replace("_", between) for name in task.outcomes), *touches]
+
+
+def rate_cells(rates: dict[str, Any], task: Task = REACH) -> list[str]:
+    """Of each outcome of a `tally` a cell with the rate and the interval; the facts share one."""
+    cells = [f"{share(rates[name]['rate'])}\n{_interval(rates[name])}" for name in task.outcomes]
+    if task.facts:
+        first, second = (share(rates[name]["rate"]) for name in task.facts)
+        cells.append(f"{first}\n[dim]{second}[/]")
+    return cells
 
 
 def _interval(rate: dict[str, Any]) -> str:
@@ -116,9 +132,9 @@ def plain_table(
     return table
 
 
-def rates_table(title: str, *more: str) -> Table:
+def rates_table(title: str, *more: str, task: Task = REACH) -> Table:
     """An empty table for `rate_cells`, and more columns."""
-    return plain_table(title, ["", "success", "collision", "joint limit", "timeout", *more])
+    return plain_table(title, ["", *rate_heads(task), *more])
 
 
 def table1_table(document: dict[str, Any], title: str) -> Table:

@@ -11,7 +11,15 @@ import pytest
 from comparing import assert_same
 from safetensors.numpy import load_file, save_file
 
-from gym_babble import HebbBabbling, Oracle, RandomBabbling, Scripted, evaluate, scenarios
+from gym_babble import (
+    GraspRandom,
+    HebbBabbling,
+    Oracle,
+    RandomBabbling,
+    Scripted,
+    evaluate,
+    scenarios,
+)
 from gym_babble.envs import BabbleReachEnv, BabbleReachVectorEnv
 from gym_babble.errors import AgentFileError, BabbleError, ConfigError
 
@@ -232,3 +240,20 @@ def test_reference_agents_choose_as_documented():
     scripted = Scripted(env).decide(senses)
     assert np.abs(scripted - 0.5) == pytest.approx(0.25)
     assert Oracle(env, threads=2).decide(senses).tolist() == Oracle(env).decide(senses).tolist()
+
+
+def test_random_grasps_draw_from_the_whole_space_for_one_and_many():
+    envs = gymnasium.make_vec("BabbleGrasp-v0", num_envs=500)
+    senses, _ = envs.reset(seed=0)
+    actions, state = GraspRandom(envs, seed=1).predict(senses)
+    assert actions.shape == (500, 4)
+    assert actions.dtype == np.float32
+    assert state is None
+    assert (np.abs(actions) <= 1).all()
+    assert actions.min(axis=0) == pytest.approx(-1, abs=0.05)
+    assert actions.max(axis=0) == pytest.approx(1, abs=0.05)
+    assert_same(GraspRandom(seed=1).predict(senses)[0], actions)
+    env = gymnasium.make("BabbleGrasp-v0", obs="flat")
+    assert GraspRandom(env).predict(env.reset(seed=0)[0])[0].shape == (4,)
+    with pytest.raises(ConfigError, match="grasping"):
+        GraspRandom("BabbleReach-v0")

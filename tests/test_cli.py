@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from stable_baselines3 import PPO
 
-from gym_babble import HebbBabbling, evaluate, scenarios
+from gym_babble import HebbBabbling, HebbGrasping, contenders, evaluate, scenarios
 from gym_babble.cli import main
 from gym_babble.ppo import train_ppo
 from gym_babble.registration import ENVIRONMENTS
-from gym_babble.tables import OUTCOMES
+from gym_babble.tasks import GRASP, REACH
 
 MOVEMENTS = "500"
 
@@ -52,13 +52,19 @@ def agent_file(tmp_path_factory):
     return path
 
 
-def check_rates(rates, cases):
+@pytest.fixture(scope="module")
+def grasping_file(tmp_path_factory):
+    path = tmp_path_factory.mktemp("agents") / "grasping.safetensors"
+    HebbGrasping(gym.make("BabbleGrasp-v0", body="icub"), seed=1).learn(50).save(path)
+    return path
+
+
+def check_rates(rates, cases, task=REACH):
     assert rates["cases"] == cases
-    assert sum(rates[name]["count"] for name in OUTCOMES) == cases
-    assert sum(rates[name]["rate"] for name in OUTCOMES) == pytest.approx(1.0)
-    assert all(
-        rates[name]["low"] <= rates[name]["rate"] <= rates[name]["high"] for name in OUTCOMES
-    )
+    assert sum(rates[name]["count"] for name in task.outcomes) == cases
+    assert sum(rates[name]["rate"] for name in task.outcomes) == pytest.approx(1.0)
+    for name in (*task.outcomes, *task.facts):
+        assert rates[name]["low"] <= rates[name]["rate"] <= rates[name]["high"]
 
 
 def test_help_needs_no_extra():
@@ -121,6 +127,49 @@ def test_babble_quasi_static(run_json, tmp_path):
     assert told["quasi_static"]
 
 
+def test_babble_saves_an_agent_of_grasping_that_evaluate_tests(run, run_json, tmp_path):
+    path = tmp_path / "agent.safetensors"
+    words = ("babble", "--task", "grasp", "--babbles", 60, "--seed", 3, "--out", path)
+    told = run_json(*words)
+    agent = HebbGrasping.load(path)
+    assert told["kept_babbles"] == agent.kept == 60
+    assert told["kept_rate"] == agent.kept / agent.babbles
+    tested = run_json("evaluate", path, "--cases", 8, "--seed", 2)
+    check_rates(tested, 8, GRASP)
+    assert tested["env_id"] == "BabbleGrasp-v0"
+    expected = evaluate(agent, "BabbleGrasp-v0", scenarios("palm_side", 8, 2))
+    assert tested["success"]["count"] == expected.count("success")
+    assert tested["palm_reach"]["count"] == sum(expected.facts["palm_reach"])
+    code, printed, _ = run("evaluate", path, "--cases", 4)
+    assert code == 0
+    assert "of palm" in printed
+    assert "the paper" not in printed  # Its tests are others.
+
+
+def test_an_agent_of_grasping_acts_on_the_body_it_learnt_on(run_json, grasping_file):
+    own = run_json("evaluate", grasping_file, "--cases", 12)
+    assert own == run_json("evaluate", grasping_file, "--cases", 12, "--body", "icub")
+    assert own != run_json("evaluate", grasping_file, "--cases", 12, "--body", "paper")
+
+
+@pytest.mark.parametrize(("name", "held"), [("scripted", 6), ("random", 0)])
+def test_evaluate_agents_of_grasping_by_name(run_json, name, held):
+    tested = run_json("evaluate", name, "--cases", 6, "--env-id", "BabbleGrasp-v0")
+    check_rates(tested, 6, GRASP)
+    assert tested["success"]["count"] == held
+
+
+@pytest.mark.parametrize("env_id", ["BabbleReach-v0", "BabbleGrasp-v0"])
+def test_an_agent_of_the_other_task_is_refused(run, agent_file, grasping_file, env_id):
+    file, task = (
+        (agent_file, "reaching") if env_id == "BabbleGrasp-v0" else (grasping_file, "grasping")
+    )
+    code, _, told = run("evaluate", file, "--env-id", env_id)
+    assert code == 2
+    assert f"is not a Babble environment for {task}" in told
+    assert told.count("\n") == 1
+
+
 def test_a_saved_agent_is_tested_on_the_body_it_learnt_on(run_json, agent_file):
     own = run_json("evaluate", agent_file, "--cases", 100)
     assert own == run_json("evaluate", agent_file, "--cases", 100, "--body", "icub")
@@ -148,10 +197,12 @@ def test_evaluate_prints_the_papers_rates_beside(run):
     assert "scripted" in printed
 
 
-def test_evaluate_a_model_of_stable_baselines3(run, run_json, tmp_path):
+@pytest.mark.parametrize(("preset", "task"), [("pattern", REACH), ("grasp", GRASP)])
+def test_evaluate_a_model_of_stable_baselines3(run, run_json, tmp_path, preset, task):
     path = tmp_path / "model.zip"
-    train_ppo("pattern", steps=1, validation_cases=0).agent.save(path)
-    check_rates(run_json("evaluate", path, "--cases", 20, "--env-id", "BabbleReachPattern-v0"), 20)
+    trained = train_ppo(preset, steps=1, validation_cases=0)
+    trained.agent.save(path)
+    check_rates(run_json("evaluate", path, "--cases", 6, "--env-id", trained.env_id), 6, task)
     code, _, told = run("evaluate", path)
     assert code == 2
     assert "--env-id" in told
@@ -177,6 +228,28 @@ def test_compare_writes_a_report_of_one_file(run_json, tmp_path):
     assert "http://" not in page
     assert "https://" not in page
     assert str(tmp_path.parent.parent) not in page.replace(str(folder), "")
+
+
+def test_compare_writes_a_report_of_grasping(run_json, monkeypatch, tmp_path):
+    monkeypatch.setattr(contenders, "VALIDATION_CASES", 4)
+    folder = tmp_path / "report"
+    document = run_json(
+        *("compare", "--task", "grasp", "--agents", "hebb-paper,ppo-stored"),
+        *("--cases", 6, "--babbles", 50, "--report", folder),
+        *("--other-report", "../index.html"),
+    )
+    assert document == json.loads((folder / "results.json").read_text(encoding="utf-8"))
+    assert [row["agent"] for row in document["agents"]] == ["hebb-paper", "ppo-stored"]
+    check_rates(document["agents"][0]["test"], 6, GRASP)
+    page = (folder / "index.html").read_text(encoding="utf-8")
+    assert page.count('src="data:image/svg+xml;base64,') == 4  # Curves, Fig. 7 and 8, the sight.
+    assert page.count('src="data:image/png;base64,') == 2
+    assert '<a href="../index.html">' in page
+    assert "compare --task grasp" in page
+    assert "--babbles 50" in page
+    assert "examples/ppo_study.py --task grasp" in page  # Where the stored row is from.
+    assert "http://" not in page
+    assert "https://" not in page
 
 
 def test_reproduce_table1(run_json, run, tmp_path):
@@ -224,6 +297,13 @@ def test_render(run, tmp_path, kind, name, begins):
     assert (tmp_path / "film" / name).read_bytes().startswith(begins)
 
 
+def test_render_an_agent_of_grasping(run, tmp_path, grasping_file):
+    code, _, told = run("render", grasping_file, "--out", tmp_path / "film", "--size", 48)
+    assert code == 0
+    assert "control steps" in told
+    assert (tmp_path / "film" / "episode.gif").read_bytes().startswith(b"GIF8")
+
+
 def test_doctor(run, run_json):
     found = run_json("doctor")
     assert found["same_bits"]
@@ -241,6 +321,7 @@ def test_doctor(run, run_json):
         (["info", "BabbleReach-v0", "--body", "none.toml"], "none.toml"),
         (["evaluate", "nobody"], "nobody"),
         (["evaluate", "random", "--env-id", "Pendulum-v1"], "Pendulum-v1"),
+        (["evaluate", "oracle", "--env-id", "BabbleGrasp-v0"], "reaching"),
         (["evaluate", "random", "--cases", "0"], "--cases"),
         (["evaluate", "random", "--cases", "many"], "--cases"),
         (["evaluate", "random", "--split", "learning"], "--split"),
@@ -249,8 +330,11 @@ def test_doctor(run, run_json):
         (["babble"], "--out"),
         (["babble", "--out", "agent", "--variant", "other"], "--variant"),
         (["babble", "--out", "agent", "--movements", "0"], "--movements"),
+        (["babble", "--out", "agent", "--task", "fly"], "--task"),
         (["compare", "--agents", "hebb-paper,nobody"], "nobody"),
         (["compare", "--agents", ""], "hebb-paper"),
+        (["compare", "--task", "grasp", "--agents", "oracle"], "ppo-stored"),
+        (["compare", "--task", "grasp", "--babbles", "0"], "--babbles"),
         (["compare", "--task", "fly"], "--task"),
         (["compare", "--seeds", "0"], "--seeds"),
         (["reproduce", "fig3"], "fig3"),

@@ -2,17 +2,20 @@
 
 import json
 import sys
+from contextlib import contextmanager
 
 import pytest
 from rich.console import Console
 
-from gym_babble import evaluate, scenarios
-from gym_babble.compare import CONTENDERS, Settings, compare
+from gym_babble import contenders, evaluate, scenarios
+from gym_babble.compare import CONTENDERS, STUDIES, Played, Settings, compare
 from gym_babble.config import Config
 from gym_babble.errors import ConfigError
 from gym_babble.tables import OUTCOMES
+from gym_babble.tasks import GRASP
 
 SMALL = Settings(cases=50, movements=500, ppo_steps=1)
+SMALL_GRASPING = Settings(task="grasp", cases=8, babbles=60, ppo_steps=1)
 
 
 @pytest.fixture(scope="module")
@@ -20,8 +23,30 @@ def comparison():
     return compare(None, SMALL)
 
 
+@contextmanager
+def few_validations():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(contenders, "VALIDATION_CASES", 4)
+        yield
+
+
+@pytest.fixture(scope="module")
+def grasping():
+    with few_validations():
+        return compare(None, SMALL_GRASPING)
+
+
+def printed(comparison, width=80):
+    console = Console(width=width)
+    with console.capture() as capture:
+        console.print(comparison.table())
+    return capture.get()
+
+
 def test_all_contenders_take_part_in_their_order(comparison):
-    assert [result.contender.key for result in comparison.results] == [c.key for c in CONTENDERS]
+    assert [result.contender.key for result in comparison.results] == [
+        contender.key for contender in CONTENDERS["reach"]
+    ]
     assert not comparison.skipped
 
 
@@ -67,17 +92,87 @@ def test_json_holds_every_rate(comparison):
         assert sum(row["test"][name]["rate"] for name in OUTCOMES) == pytest.approx(1.0)
 
 
-def test_the_table_fits_80_characters_and_loses_nothing(comparison):
-    console = Console(width=80)
-    with console.capture() as capture:
-        console.print(comparison.table())
-    printed = capture.get()
-    assert "…" not in printed
-    assert max(map(len, printed.splitlines())) <= 80
-    for result in comparison.results:
-        assert result.contender.title in printed
-        assert result.contender.detail in printed
-    assert ".640–.698" in printed
+def test_the_tables_fit_80_characters_and_lose_nothing(comparison, grasping):
+    for one in (comparison, grasping):
+        told = printed(one)
+        assert "…" not in told
+        assert max(map(len, told.splitlines())) <= 80
+        for result in one.results:
+            assert result.contender.title in told
+            assert result.contender.detail in told
+    assert ".640–.698" in printed(comparison)
+    assert "examples/ppo_study.py --task grasp" in printed(grasping, 400)
+
+
+def test_grasping_leaves_out_who_must_be_asked_for(grasping):
+    keys = [result.contender.key for result in grasping.results]
+    assert keys == ["hebb-paper", "ppo-stored", "scripted", "random"]
+    assert not grasping.skipped
+
+
+def test_agents_of_grasping_are_tested_on_the_same_cases(grasping):
+    cases = scenarios("palm_side", 8)
+    for result in grasping.results:
+        if isinstance(result, Played) and result.contender.key != "random":
+            assert evaluate(result.trained[0].agent, "BabbleGrasp-v0", cases) == result.tests[0]
+    # Who knows the geometry grasps, who acts at random does not: the rows are not exchanged.
+    assert grasping.result("scripted").rates["success"]["count"] == 8
+    assert grasping.result("random").rates["success"]["count"] == 0
+
+
+def test_hebb_grasping_counts_what_it_babbled(grasping):
+    result = grasping.result("hebb-paper")
+    (one,) = result.trained
+    assert one.legal_movements == 60 <= one.movements
+    assert one.control_steps == 80 * one.movements  # 4 s in steps of 50 ms.
+    assert result.legal_rate == 60 / one.movements
+    assert one.curve[-1].control_steps == one.control_steps
+    assert len(one.curve) == 2
+
+
+def test_ppo_learns_to_grasp_when_it_is_asked_for():
+    with few_validations():
+        (result,) = compare(["ppo-posture"], SMALL_GRASPING).results
+    (one,) = result.trained
+    assert one.control_steps == 8_192  # One rollout.
+    assert one.curve[-1].control_steps == one.control_steps
+    assert result.rates["cases"] == 8
+
+
+def test_json_of_grasping_holds_every_rate_and_where_the_stored_row_is_from(grasping):
+    document = json.loads(json.dumps(grasping.to_json(), allow_nan=False))
+    assert (document["task"], document["protocol"]) == ("grasp", "palm_side")
+    assert document["babbles"] == 60
+    assert "movements" not in document
+    for row in document["agents"]:
+        test = row["test"]
+        assert sum(test[name]["count"] for name in GRASP.outcomes) == test["cases"]
+        assert test["palm_reach"]["count"] <= test["reach"]["count"] <= test["cases"]
+        assert test["success"]["count"] <= test["reach"]["count"]
+    hebb = document["agents"][0]
+    assert hebb["training_by_seed"][0]["kept_babbles"] == 60
+    assert hebb["kept_rate"] == 60 / hebb["training_by_seed"][0]["babbles"]
+    stored = document["agents"][1]["stored"]
+    assert stored["command"].startswith("python examples/ppo_study.py --task grasp")
+    assert stored["presets"]["grasp"]["env_id"] == "BabbleGrasp-v0"
+
+
+def test_the_stored_row_is_the_studys(grasping):
+    study = json.loads((STUDIES / "ppo_grasp.json").read_text(encoding="utf-8"))
+    result = grasping.result("ppo-stored")
+    assert result.rates["cases"] == sum(run["cases"] for run in study["runs"])
+    for name in (*GRASP.outcomes, *GRASP.facts):
+        assert result.rates[name]["count"] == sum(run[name] for run in study["runs"])
+    assert [len(one.curve) for one in result.trained] == [
+        len(run["curve"]) for run in study["runs"]
+    ]
+    assert not isinstance(result, Played)
+
+
+def test_a_study_of_another_body_is_left_out():
+    found = compare(["ppo-stored"], Settings(task="grasp", body="icub", cases=1))
+    assert not found.results
+    assert "paper" in found.skipped["ppo-stored"]
 
 
 def test_seeds_are_pooled():
@@ -85,7 +180,9 @@ def test_seeds_are_pooled():
     one = two.results[0]
     assert len(one.trained) == len(one.tests) == 2
     assert one.tests[0] != one.tests[1]
-    assert len(one.pooled.outcomes) == 100
+    assert one.rates["cases"] == 100
+    both = [rates["success"]["count"] for rates in one.rates_by_seed]
+    assert one.rates["success"]["count"] == sum(both)
 
 
 def test_without_stable_baselines3_the_others_run(monkeypatch):
@@ -99,10 +196,7 @@ def test_without_stable_baselines3_the_others_run(monkeypatch):
     assert "gym-babble[sb3]" in found.skipped["ppo-pattern"]
     assert any("gym-babble[sb3]" in line for line in said)
     assert found.to_json()["skipped"][0]["agent"] == "ppo-pattern"
-    console = Console(width=120)
-    with console.capture() as capture:
-        console.print(found.table())
-    assert "gym-babble[sb3]" in capture.get()
+    assert "gym-babble[sb3]" in printed(found, 120)
 
 
 def test_bad_settings_are_refused():
@@ -112,3 +206,9 @@ def test_bad_settings_are_refused():
         compare(["random"], Settings(body="octopus"))
     with pytest.raises(ConfigError, match="seeds"):
         compare(["random"], Settings(seeds=0))
+    with pytest.raises(ConfigError, match="babbles"):
+        compare(["random"], Settings(task="grasp", babbles=0))
+    with pytest.raises(ConfigError, match="fly"):
+        compare(["random"], Settings(task="fly"))
+    with pytest.raises(ConfigError, match="oracle"):
+        compare(["oracle"], Settings(task="grasp"))

@@ -1,11 +1,15 @@
 """Every example runs, on a small budget, and ends in the line that its reader waits for."""
 
+import json
 import re
 import runpy
 import sys
+from functools import partial
 
 import pytest
 import torch
+
+from gym_babble import compare, ppo
 
 RUNS = {
     "hebb_reach.py": (
@@ -56,3 +60,23 @@ def test_last_line(name, repository, monkeypatch, capsys, tmp_path):
     runpy.run_path(str(path), run_name="__main__")
     last = capsys.readouterr().out.strip().splitlines()[-1]
     assert re.fullmatch(expected, last), last
+
+
+def test_what_a_study_of_grasping_writes_is_what_compare_shows(
+    repository, monkeypatch, capsys, tmp_path
+):
+    path = repository / "examples" / "ppo_study.py"
+    monkeypatch.setattr(ppo, "train_ppo", partial(ppo.train_ppo, validation_cases=2))
+    words = f"--task grasp --seeds 1 --steps 1 --cases 6 --out {tmp_path}"
+    monkeypatch.setattr(sys, "argv", [str(path), *words.split()])
+    runpy.run_path(str(path), run_name="__main__")
+    assert capsys.readouterr().out.strip().splitlines()[-1].startswith("| grasp | 1 | 1 |")
+    study = json.loads((tmp_path / "ppo_grasp.json").read_text(encoding="utf-8"))
+    assert study["command"] == f"python examples/ppo_study.py {words}"
+    monkeypatch.setattr(compare, "STUDIES", tmp_path)
+    settings = compare.Settings(task="grasp", cases=1)
+    (result,) = compare.compare(["ppo-stored"], settings).results
+    (run,) = study["runs"]
+    assert result.rates["cases"] == 6
+    assert result.rates["timeout"]["count"] == run["timeout"]
+    assert result.trained[0].control_steps == run["control_steps"] == 8_192

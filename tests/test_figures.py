@@ -117,6 +117,11 @@ def test_learning_curves_have_a_line_for_each_learner():
     figure = figures.learning_curves(comparison)
     for axes in figure.axes:
         assert len([line for line in axes.lines if line.get_marker() == "."]) == 2
+        assert len([line for line in axes.lines if line.get_ls() == ":"]) == 1  # The paper's.
+    stored = compare(["ppo-stored"], Settings(task="grasp", cases=1))
+    for axes in figures.learning_curves(stored).axes:
+        drawn = [line.get_ls() for line in axes.lines]
+        assert drawn == ["-"] * len(stored.results[0].trained)
 
 
 def test_the_same_figure_is_the_same_svg():

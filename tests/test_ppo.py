@@ -1,5 +1,7 @@
 """PPO's presets and what `train_ppo` says of its runs."""
 
+import json
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -41,6 +43,21 @@ def test_validation_does_not_change_what_is_learnt():
     agents = [train_ppo("pattern", steps=1_024, validation_cases=n).agent for n in (0, 20)]
     one, two = (agent.policy.state_dict()["action_net.weight"] for agent in agents)
     assert torch.equal(one, two)
+
+
+def test_grasping_is_validated_on_its_own_protocol():
+    trained = train_ppo("grasp", steps=1, validation_cases=6, validations=1)
+    assert trained.control_steps == 8_192
+    cases = scenarios("palm_side", 6, split="validation")
+    result = evaluate(trained.agent, trained.env_id, cases, **trained.env_kwargs)
+    assert [point.success for point in trained.curve] == [result.rate("success")]
+
+
+def test_a_preset_is_data():
+    told = {name: json.loads(json.dumps(preset.to_json())) for name, preset in PRESETS.items()}
+    assert told["delta_posture"]["settings"]["learning_rate"] == [2.5e-3, 0.0]
+    assert told["grasp"]["policy"]["activation_fn"] == "ReLU"
+    assert told["grasp"].keys() == vars(PRESETS["grasp"]).keys()
 
 
 @pytest.mark.parametrize("name", PRESETS)

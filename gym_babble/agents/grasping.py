@@ -22,9 +22,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["GraspScripted", "HebbGrasping"]
+__all__ = ["BABBLE_S", "GraspRandom", "GraspScripted", "HebbGrasping"]
 
 BABBLES_A_CALL = 50
+BABBLE_S = 4.0
+"""Length of a babble [s]: the hand closes for 2, the arm moves for 2 (the core's)."""
 
 
 class Grasping(NamedTuple):
@@ -305,3 +307,24 @@ class GraspScripted(GraspAgent):
         task = self._choices.task
         point = task.looked_at(eye)
         return None if point is None else task.grasp_posture((point[0], point[1]), 0.0)
+
+
+class GraspRandom:
+    """Draws each action uniformly from [−1, 1]⁴, whatever it sees."""
+
+    def __init__(self, env: EnvLike = "BabbleGrasp-v0", *, seed: int | None = None) -> None:
+        self._choices = choices_of(env, GraspChoices)
+        self._senses = dict(Spec.of(self._choices.task).slices)
+        self._random = np.random.default_rng(seed)
+
+    def predict(
+        self,
+        observation: Any,
+        state: None = None,
+        episode_start: Any = None,
+        deterministic: bool = False,  # noqa: FBT001, FBT002 - stable-baselines3's signature
+    ) -> tuple[NDArray[np.float32], None]:
+        """Actions (4,) for an observation, or (n, 4) for a batch of them; no state."""
+        del episode_start, deterministic
+        shape = flat_senses(observation, self._senses).shape[:-1]
+        return self._random.uniform(-1.0, 1.0, (*shape, 4)).astype(np.float32), state

@@ -31,8 +31,9 @@ help: ## List the targets
 
 setup: $(STAMPS)/extension ## Install everything into .venv and build the extension (the others call it)
 
-demo: setup ## Compare the agents and write the figures and the table into report/
-	$(BIN)/gym-babble compare --report report
+demo: setup ## Compare the agents on both tasks and write figures and tables into report/
+	$(BIN)/gym-babble compare --report report --other-report grasp/index.html
+	$(BIN)/gym-babble compare --task grasp --report report/grasp --other-report ../index.html
 
 test: setup ## Run the Rust and the Python tests
 	cargo test

@@ -15,8 +15,9 @@ def check_wheel(path: Path) -> None:
     with zipfile.ZipFile(path) as wheel:
         names = wheel.namelist()
     strays = [name for name in names if not name.startswith(("gym_babble/", "gym_babble-"))]
-    sources = {str(source) for source in Path("gym_babble").rglob("*.py")}
-    missing = (sources | {"gym_babble/py.typed", "gym_babble/_core.pyi"}) - set(names)
+    kinds = ("*.py", "*.pyi", "*.css", "*.json", "py.typed")
+    sources = {str(source) for kind in kinds for source in Path("gym_babble").rglob(kind)}
+    missing = sources - set(names)
     if strays or missing or "-abi3-" not in path.name:
         sys.exit(f"error: {path}: strays {strays}, missing {sorted(missing)}")
     print(f"{path.name}: {len(names)} files, {path.stat().st_size / 1e6:.1f} MB")

@@ -270,6 +270,7 @@ def compare(
         command += ["--seeds", str(seeds), "--cases", str(cases)]
         many = movements if task == "reach" else babbles
         command += [f"--{comparison.task.made}", str(many), "--body", body]
+        command += ["--other-report", other_report] if other_report is not None else []
         written = write_report(comparison, report, shlex.join(command), other_report)
     if as_json:
         _print_json(comparison.to_json())

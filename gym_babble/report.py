@@ -13,7 +13,7 @@ import numpy as np
 
 from gym_babble import figures
 from gym_babble.agents import HebbBabbling, HebbGrasping
-from gym_babble.compare import Played
+from gym_babble.compare import Played, Stored
 from gym_babble.doctor import versions
 from gym_babble.film import contact_sheet, png, record
 from gym_babble.loading import LoadedAgent
@@ -72,7 +72,7 @@ WORDS = {
     ),
 }
 FIG7_EVERY = 4
-"""A way of the paper's Fig. 7 drawn of so many."""
+"""One in so many of Fig. 7's tests is played."""
 
 
 def write_report(
@@ -146,6 +146,8 @@ def _table(comparison: Comparison) -> str:
     )
     key = "".join(f'<i class="{name}"></i>{name.replace("_", " ")}' for name in task.outcomes)
     words = WORDS[task.name]
+    stored = any(isinstance(result, Stored) for result in comparison.results)
+    elsewhere = ", of a stored study on the one that ran it" if stored else ""
     return (
         f"<h2>{'Table I' if task.paper else 'Success'}</h2>\n<p>{settings.cases:,} {words.cases}"
         f"{f', for each of {settings.seeds} seeds' if settings.seeds > 1 else ''}; under each rate "
@@ -153,7 +155,7 @@ def _table(comparison: Comparison) -> str:
         f'</p>\n<div class="scroll"><table><tr>{head}</tr>\n{rows}</table></div>\n'
         f'<p class="note key">{key}</p>\n'
         f'<p class="note">{words.learnt_from} Clock: seconds of '
-        "learning on this machine. With several seeds, means.</p>\n"
+        f"learning on this machine{elsewhere}. With several seeds, means.</p>\n"
         f"{notes}"
     )
 
@@ -322,9 +324,9 @@ def _hands(comparison: Comparison) -> str:
         "<h2>Ways of the hand (Fig. 7)</h2>\n"
         + _figure(
             _svg(figures.fig7(ways)),
-            "Final portions of the palm's ways to 12 places of each object, which lie all around. "
-            "Thin: touched; bold: grasped; dotted grey: missed. Circles are the objects in their "
-            "size.",
+            "Final portions of the palm's ways to 12 places of each object, which lie all around, "
+            "in a quarter of the figure's tests. Thin: touched; bold: grasped; dotted grey: "
+            "missed. Circles are the objects in their size.",
         )
         + "<h2>Activation and weights (Fig. 8)</h2>\n"
         + _figure(

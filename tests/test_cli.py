@@ -246,7 +246,7 @@ def test_compare_writes_a_report_of_grasping(run_json, monkeypatch, tmp_path):
     assert page.count('src="data:image/png;base64,') == 2
     assert '<a href="../index.html">' in page
     assert "compare --task grasp" in page
-    assert "--babbles 50" in page
+    assert "--babbles 50 --body paper --other-report ../index.html" in page
     assert "examples/ppo_study.py --task grasp" in page  # Where the stored row is from.
     assert "http://" not in page
     assert "https://" not in page

@@ -1,0 +1,106 @@
+"""Table II, Figures 7 and 8, and what the eye sees, in small."""
+
+import csv
+import io
+import json
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from gym_babble import HebbGrasping, figures, scenarios
+from gym_babble import table2 as grasping
+from gym_babble.tables import table2_tables
+
+
+@pytest.fixture(scope="module")
+def table():
+    return grasping.table2(seeds=2, cases=6, babbles=30, hold_trials=3)
+
+
+def test_rates_are_those_of_the_tests(table):
+    document = json.loads(json.dumps(table.to_json()))
+    rows = list(csv.DictReader(io.StringIO(table.to_csv())))
+    for size in document["sizes"]:
+        for protocol, found in size["tests"].items():
+            pooled, by_seed = found["pooled"], found["by_seed"]
+            assert pooled["tests"] == sum(seed["tests"] for seed in by_seed)
+            for fact in grasping.FACTS:
+                assert pooled[fact]["count"] == sum(seed[fact]["count"] for seed in by_seed)
+                assert pooled[fact]["low"] <= pooled[fact]["rate"] <= pooled[fact]["high"]
+            # A palm that touches is a part that touches, and what is held was touched.
+            assert pooled["held"]["count"] <= pooled["reach"]["count"]
+            assert pooled["palm_reach"]["count"] <= pooled["reach"]["count"]
+            of_row = [r for r in rows if r["protocol"] == protocol]
+            of_row = [r for r in of_row if float(r["diameter_m"]) == size["diameter"]]
+            assert len(of_row) == len(by_seed)
+
+
+def test_every_grid_case_is_played_once_for_each_seed(table):
+    for size in table.sizes:
+        played = sum(case["diameter"] == size.diameter for case in scenarios("table2"))
+        assert [len(test.outcomes) for test in size.tests["table2"]] == [played, played]
+        assert size.hands.shape == (2 * played, 2)
+
+
+def test_the_small_object_closes_the_hand_further(table):
+    small, big = table.sizes
+    assert (small.babbled.mean(axis=0) < big.babbled.mean(axis=0) - 10).all()
+    assert (np.abs(small.hands.mean(axis=0) - small.babbled.mean(axis=0)) < 10).all()
+
+
+def test_the_reflex_holds(table):
+    assert [rate["diameter"] for rate in table.hold] == list(grasping.HOLD_DIAMETERS_M)
+    for rate in table.hold:
+        assert rate["held"] == rate["trials"] == 3
+        assert rate["penetration_mm"] < 3.0
+
+
+@pytest.mark.slow
+def test_the_reflex_holds_in_90_of_100(capsys):
+    rates = grasping.hold_rates(100)
+    with capsys.disabled():
+        print([(rate["diameter"], rate["held"]) for rate in rates])
+    assert all(rate["held"] >= 90 for rate in rates)
+
+
+def test_tables_show_both_sizes_beside_the_paper(table):
+    console = Console(width=100, record=True, file=io.StringIO())
+    for part in table2_tables(table.to_json()):
+        console.print(part)
+    text = console.export_text()
+    for known in ("36.99", "46.34", ".715", ".111", "2.4 cm, thumb", "6 cm, palm_side"):
+        assert known in text
+
+
+def test_ways_end_at_touched_objects():
+    agent = HebbGrasping(seed=1).learn(60)
+    cases = [case for case in scenarios("fig7") if case["diameter"] == 0.06][::20]
+    ways = grasping.grasp_ways(agent, cases)
+    assert [way.case for way in ways] == cases
+    for way in ways:
+        near = np.linalg.norm(way.palm - np.array(way.case["object"]), axis=1).min()
+        if way.held:
+            assert way.reach
+            assert near < 0.03 + 0.06
+    figure = figures.fig7(ways)
+    (axes,) = figure.axes
+    assert len(axes.patches) == len({way.case["object"] for way in ways})
+    assert f"{sum(way.held for way in ways)} grasped" in axes.get_title(loc="left")
+
+
+def test_fig8_shows_the_agents_own_weights():
+    agent = HebbGrasping(seed=1).learn(60)
+    figure = figures.fig8(agent, eye=(0.5, 0.8))
+    outward = next(ax for ax in figure.axes if "eye neuron" in ax.get_title(loc="left"))
+    shown = outward.images[0].get_array()
+    expected = agent.weights["reach.weights"][:, 16 * 21 + 10].reshape(21, 21)
+    np.testing.assert_array_equal(shown, expected)
+
+
+def test_sights_are_of_both_sizes():
+    seen = grasping.sights(size=63)
+    assert [name for name, _ in seen] == ["2.4 cm", "6 cm"]
+    red = [np.sum(image[1][..., 0] > 2 * image[1][..., 1].astype(int)) for _, image in seen]
+    assert red[1] > 4 * red[0] > 0
+    assert len(figures.sight(seen).axes) == 6

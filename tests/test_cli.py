@@ -280,6 +280,27 @@ def test_reproduce_figures(run, tmp_path, figure):
     assert path.read_bytes().startswith(b"\x89PNG")
 
 
+def test_reproduce_table2(run_json, tmp_path):
+    words = ("reproduce", "table2", "--seeds", 1, "--cases", 2, "--babbles", 10)
+    words += ("--hold-trials", 1, "--out", tmp_path)
+    document = run_json(*words)
+    assert document == json.loads((tmp_path / "table2.json").read_text(encoding="utf-8"))
+    with (tmp_path / "table2.csv").open(newline="") as file:
+        lines = list(csv.DictReader(file))
+    grid = [size["tests"]["table2"]["pooled"] for size in document["sizes"]]
+    told = [int(line["tests"]) for line in lines if line["protocol"] == "table2"]
+    assert told == [found["tests"] for found in grid]
+
+
+@pytest.mark.parametrize("figure", ["fig7", "fig8", "sight"])
+def test_reproduce_figures_of_grasping(run, tmp_path, figure):
+    path = tmp_path / f"{figure}.png"
+    learning = () if figure == "sight" else ("--babbles", 20)
+    code, _, _ = run("reproduce", figure, "--out", path, *learning)
+    assert code == 0
+    assert path.read_bytes().startswith(b"\x89PNG")
+
+
 @pytest.mark.parametrize(
     ("kind", "name", "begins"),
     [

@@ -10,7 +10,7 @@ import argparse
 import gymnasium as gym
 import numpy as np
 
-from gym_babble import HebbGrasping, scenarios
+from gym_babble import Config, HebbGrasping, scenarios
 from gym_babble.envs import BabbleGraspEnv
 
 parser = argparse.ArgumentParser(description=__doc__)
@@ -45,11 +45,12 @@ def recall(agent: HebbGrasping, diameter: float, seed: int) -> np.ndarray:
     low, high = BabbleGraspEnv().choices.ranges[:2].T
     arms = low + recalled[:, :2] * (high - low)
     objects = np.array([case["object"] for case in cases])
-    # The palm's surface is 1 cm from the forearm's line, on its left.
-    elbows = 0.15 * np.stack([np.cos(arms[:, 0]), np.sin(arms[:, 0])], 1)
+    arm = Config().body.arm
+    # The palm's surface is beside the forearm's line, on its left.
+    elbows = arm.upper_arm_m * np.stack([np.cos(arms[:, 0]), np.sin(arms[:, 0])], 1)
     along = arms.sum(axis=1)
     normals = np.stack([-np.sin(along), np.cos(along)], 1)
-    gaps = ((objects - elbows) * normals).sum(axis=1) - 0.01 - diameter / 2
+    gaps = ((objects - elbows) * normals).sum(axis=1) - arm.half_width_m - diameter / 2
     return np.column_stack([100 * gaps, recalled[:, 2:]])
 
 

@@ -194,6 +194,7 @@ class _GraspExperiences(TypedDict):
 
 @final
 class GraspHebb:
+    BABBLE_S: float
     def __new__(cls, config: str, seed: int, threads: int) -> GraspHebb: ...
     @staticmethod
     def default_config() -> str: ...

@@ -116,15 +116,20 @@ def _top(
 @app.command("list")
 def list_environments(as_json: AsJson = False) -> None:
     """List the environments."""
-    if as_json:
-        _print_json([asdict(row) for row in ENVIRONMENTS])
-        return
-    table = plain_table(None, ["id", "obs", "control", "reward", "steps", "solved at"], left=4)
+    listed = []
     for row in ENVIRONMENTS:
         env: Any = gymnasium.make(row.id)
-        steps = str(env.unwrapped.choices.spec.max_episode_steps)
-        solved_at = "" if row.reward_threshold is None else f"{row.reward_threshold:g}"
-        table.add_row(row.id, row.obs, row.control, row.reward, steps, solved_at)
+        steps = env.unwrapped.choices.spec.max_episode_steps
+        listed.append({**asdict(row), "max_episode_steps": steps})
+    if as_json:
+        _print_json(listed)
+        return
+    table = plain_table(None, ["id", "obs", "control", "reward", "steps", "solved at"], left=4)
+    for found in listed:
+        threshold = found["reward_threshold"]
+        cells = (str(found[name]) for name in ("id", "obs", "control", "reward"))
+        steps = str(found["max_episode_steps"])
+        table.add_row(*cells, steps, "" if threshold is None else f"{threshold:g}")
     _print(table)
 
 

@@ -174,7 +174,7 @@ class Object:
     friction: float = 0.8
     """Coulomb friction between object and hand [C]."""
     support_friction: float = 0.5
-    """Coulomb friction between object and support [C]."""
+    """Coulomb friction between object and support, at most that of the object [C]."""
     linear_damping: float = 0.5
     """Damping of its motion [1/s] [C]."""
     angular_damping: float = 20.0

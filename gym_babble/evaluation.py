@@ -13,6 +13,7 @@ import numpy as np
 from gym_babble.errors import ConfigError
 from gym_babble.progress import track
 from gym_babble.scenarios import scenarios
+from gym_babble.tasks import task_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -88,7 +89,8 @@ def evaluate(
     Args:
         agent: Anything with stable-baselines3's `predict`.
         env_id: Environment to play in.
-        cases: From `scenarios`; 1,000 of Table I if not given, of seed 0 and split "test".
+        cases: From `scenarios`; if not given 1,000 of Table I, or of the region "palm_side" in
+            grasping, of seed 0 and split "test".
         body: Body and task.
         deterministic: Passed to `predict`.
         progress_bar: Show a bar with the time left.
@@ -99,7 +101,7 @@ def evaluate(
         ScenarioError: A case cannot be played on this body.
     """
     if cases is None:
-        cases = scenarios("table1", 1000, body=body)
+        cases = scenarios(task_of(env_id).protocol, 1000, body=body)
     if not cases:
         raise ConfigError("cases is empty, expected at least one")
     groups = [cases[i : i + ENVS] for i in range(0, len(cases), ENVS)]
@@ -136,7 +138,7 @@ def _play(
         for name, held in facts.items():
             held[ending] = infos[name][ending]
         running &= ~ended
-        # An ended environment begins anew at its next step, whose observation is a start.
+        # Ended environments begin anew at their next step; what they do from now on is unseen.
         starts = ended
     return Evaluation(
         tuple(outcomes),

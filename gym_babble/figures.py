@@ -304,7 +304,7 @@ def fig8(agent: HebbGrasping, eye: tuple[float, float] = (0.45, 0.85)) -> Figure
     diameters = np.unique(left["diameter"])
     for place, diameter in ((3, diameters[0]), (4, diameters[-1])):
         hand = left["hand"][left["diameter"] == diameter].mean(axis=0)
-        thumb, finger = (round(float(ep) / 90.0 * (side - 1)) for ep in hand)
+        thumb, finger = (round(np.clip(ep / 90.0, 0.0, 1.0) * (side - 1)) for ep in hand.tolist())
         inward = weights["grasp.weights"][finger * side + thumb].reshape(21, 21)[::-1]
         title = f"To the hand of {100 * diameter:g} cm: EP {hand[0]:.0f}°, {hand[1]:.0f}°"
         _weights(figure, place, inward, title=title, axes=("fovea, column", "row from below"))

@@ -11,14 +11,16 @@ import numpy as np
 
 from gym_babble import _core
 from gym_babble.agents import HebbGrasping
-from gym_babble.config import config_json
+from gym_babble.config import Config, config_json
 from gym_babble.envs import BabbleGraspEnv
+from gym_babble.envs.choices import check_whole
+from gym_babble.errors import ConfigError
 from gym_babble.evaluation import Evaluation, evaluate, wilson
 from gym_babble.progress import track
 from gym_babble.scenarios import scenarios
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -74,8 +76,8 @@ class Sized:
     """Equilibrium points of thumb and finger that the tests' sights recalled (n, 2) [deg]."""
     babbled: NDArray[np.float64]
     """Those of the babbled hands (n, 2) [deg]."""
-    tests: dict[str, tuple[Evaluation, ...]]
-    """Of each protocol, one evaluation of each seed."""
+    tests: dict[str, dict[int, Evaluation]]
+    """Of each protocol, the evaluation of each seed that drew cases of this size."""
 
     def to_json(self) -> dict[str, Any]:
         """Everything in JSON's types."""
@@ -85,15 +87,15 @@ class Sized:
                 name: {
                     "mean": float(self.hands[:, i].mean()),
                     "spread": float(self.hands[:, i].std()),
-                    "babbled_mean": float(self.babbled[:, i].mean()),
-                    "babbled_spread": float(self.babbled[:, i].std()),
+                    "babbled_mean": _of(np.mean, self.babbled[:, i]),
+                    "babbled_spread": _of(np.std, self.babbled[:, i]),
                 }
                 for i, name in enumerate(("thumb", "finger"))
             },
             "tests": {
                 protocol: {
-                    "pooled": _tally(sum(tests, start=Evaluation((), (), ()))),
-                    "by_seed": [_tally(test) for test in tests],
+                    "pooled": _tally(sum(tests.values(), start=Evaluation((), (), ()))),
+                    "by_seed": [{"seed": seed, **_tally(test)} for seed, test in tests.items()],
                 }
                 for protocol, tests in self.tests.items()
                 if tests  # Of few random cases none may have this size.
@@ -127,10 +129,15 @@ class TableTwo:
         lines: list[list[Any]] = [["diameter_m", "protocol", "seed", "tests", *FACTS]]
         for size in self.sizes:
             for protocol, tests in size.tests.items():
-                for seed, test in enumerate(tests):
+                for seed, test in tests.items():
                     rates = [float(np.mean(test.facts[name])) for name in FACTS]
                     lines.append([size.diameter, protocol, seed, len(test.outcomes), *rates])
         return "".join(",".join(map(str, line)) + "\n" for line in lines)
+
+
+def _of(measure: Callable[[NDArray[np.float64]], Any], values: NDArray[np.float64]) -> float | None:
+    """A measure of values; None of none, as JSON has no NaN."""
+    return float(measure(values)) if len(values) else None
 
 
 def _tally(result: Evaluation) -> dict[str, Any]:
@@ -162,12 +169,18 @@ def table2(
         babbles: Babbles to learn from.
         hold_trials: Trials of the reflex with each diameter; 0 for none.
         progress_bar: Show bars with the time left.
+
+    Raises:
+        ConfigError: An argument is not one there is, or the body has no list of diameters.
     """
+    check_whole("seeds", seeds, 1, 10_000, "seeds")
+    check_whole("cases", cases, 1, 1_000_000, "cases")
+    check_whole("babbles", babbles, 1, 10_000_000, "babbles")
     diameters = _diameters(body)
     hands: dict[float, list[Any]] = {d: [] for d in diameters}
     babbled: dict[float, list[Any]] = {d: [] for d in diameters}
-    tests: dict[float, dict[str, list[Evaluation]]] = {
-        d: {protocol: [] for protocol in PROTOCOLS} for d in diameters
+    tests: dict[float, dict[str, dict[int, Evaluation]]] = {
+        d: {protocol: {} for protocol in PROTOCOLS} for d in diameters
     }
     kept, made = 0, 0
     for seed in range(seeds):
@@ -183,7 +196,7 @@ def table2(
                 chosen = [case for case in drawn if case["diameter"] == d]
                 if not chosen:
                     continue
-                tests[d][protocol].append(_play(agent, chosen, body, progress_bar=progress_bar))
+                tests[d][protocol][seed] = _play(agent, chosen, body, progress_bar=progress_bar)
                 if protocol == "table2":
                     hands[d].append(recalled_hands(agent, chosen, body))
     sizes = [
@@ -191,7 +204,7 @@ def table2(
             diameter=d,
             hands=np.concatenate(hands[d]),
             babbled=np.concatenate(babbled[d]),
-            tests={protocol: tuple(found) for protocol, found in tests[d].items()},
+            tests=tests[d],
         )
         for d in diameters
     ]
@@ -201,6 +214,8 @@ def table2(
 
 
 def _diameters(body: BodyLike) -> list[float]:
+    if Config.from_json(config_json(body)).grasp.any_diameter_between:
+        raise ConfigError("grasp.any_diameter_between = true: Table II has a list of diameters")
     return sorted({case["diameter"] for case in scenarios("table2", body=body)})
 
 
@@ -239,7 +254,11 @@ def hold_rates(
 
     The reflex closes on an object at the palm for 3 s, the support goes, and the arm moves to a
     random posture every half second.
+
+    Raises:
+        ConfigError: There are no trials, or a field of the body is not one there is.
     """
+    check_whole("trials", trials, 1, 1_000_000, "trials")
     task = _core.GraspTask(config_json(body))
     rates = []
     total = trials * len(diameters)

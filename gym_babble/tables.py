@@ -160,13 +160,14 @@ def table2_tables(document: dict[str, Any]) -> list[Table]:
     sizes = document["sizes"]
     paper = [document["paper"]["small"], document["paper"]["big"]]
     names = [f"{100 * size['diameter']:g} cm" for size in sizes]
-    printed = dict(zip(names, paper, strict=False)) if len(sizes) == 2 else {}
+    # The printed sizes stand for these (docs/grasping.md); others have no counterpart.
+    printed = dict(zip(("2.4 cm", "6 cm"), paper, strict=True))
     heads = ["", "recalled\n[dim]spread[/]", "babbled\n[dim]spread[/]", "paper", "paper's\nideal"]
     hands = plain_table("Table II: equilibrium points, 90° − flexion [deg]", heads)
     for name, size in zip(names, sizes, strict=True):
         for digit, found in size["hand"].items():
             cells = [
-                f"{found[mean]:.2f}\n[dim]{found[spread]:.2f}[/]"
+                "–" if found[mean] is None else f"{found[mean]:.2f}\n[dim]{found[spread]:.2f}[/]"
                 for mean, spread in (("mean", "spread"), ("babbled_mean", "babbled_spread"))
             ]
             known = printed.get(name, {}).get(digit)

@@ -39,7 +39,7 @@ def test_rates_are_those_of_the_tests(table):
 def test_every_grid_case_is_played_once_for_each_seed(table):
     for size in table.sizes:
         played = sum(case["diameter"] == size.diameter for case in scenarios("table2"))
-        assert [len(test.outcomes) for test in size.tests["table2"]] == [played, played]
+        assert [len(test.outcomes) for test in size.tests["table2"].values()] == [played, played]
         assert size.hands.shape == (2 * played, 2)
 
 

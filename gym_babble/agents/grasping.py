@@ -11,6 +11,7 @@ import numpy as np
 
 from gym_babble import _core
 from gym_babble.agents.base import EnvLike, choices_of, flat_senses, merge, processors
+from gym_babble.envs.choices import check_whole
 from gym_babble.envs.grasp import BabbleGraspEnv, GraspChoices
 from gym_babble.errors import AgentFileError, ConfigError
 from gym_babble.progress import track
@@ -25,8 +26,8 @@ if TYPE_CHECKING:
 __all__ = ["BABBLE_S", "GraspRandom", "GraspScripted", "HebbGrasping"]
 
 BABBLES_A_CALL = 50
-BABBLE_S = 4.0
-"""Length of a babble [s]: the hand closes for 2, the arm moves for 2 (the core's)."""
+BABBLE_S = _core.GraspHebb.BABBLE_S
+"""Time that one babble takes [s]."""
 
 
 class Grasping(NamedTuple):
@@ -179,8 +180,7 @@ class HebbGrasping(GraspAgent):
         Returns:
             The agent itself.
         """
-        if babbles < 0:
-            raise ConfigError(f"babbles = {babbles} is not at least 0")
+        check_whole("babbles", babbles, 0, 10_000_000, "babbles")
         chunks = [BABBLES_A_CALL] * (babbles // BABBLES_A_CALL)
         if babbles % BABBLES_A_CALL:
             chunks.append(babbles % BABBLES_A_CALL)
@@ -268,10 +268,11 @@ class HebbGrasping(GraspAgent):
 
         `eye` (n, 2), `fovea` (n, 441), `arm` (n, 2), `hand` (n, 2) [deg] and `diameter` (n,) [m].
         """
-        names = ("eye", "fovea", "arm", "hand", "diameter")
-        if not self._babbled:
-            return {name: np.empty(0) for name in names}
-        return {name: np.concatenate([part[name] for part in self._babbled]) for name in names}
+        shapes = {"eye": (0, 2), "fovea": (0, 441), "arm": (0, 2), "hand": (0, 2), "diameter": (0,)}
+        return {
+            name: np.concatenate([np.empty(shape), *(part[name] for part in self._babbled)])
+            for name, shape in shapes.items()
+        }
 
     @property
     def babbles(self) -> int:

@@ -133,7 +133,8 @@ class BabbleGraspEnv(BabbleEnv):
     that flex as one ("virtual finger"). Muscles (Eq. 2) pull all joints towards equilibrium points
     with a time constant of 1 s. A red sphere rests on a support that touches nothing else; the palm
     faces counter-clockwise. An eye above follows the sphere by a reflex (Eq. 1, from pixels, one
-    step a control step); arm and hand can hide it. Contacts and friction are simulated.
+    step a control step, after it has found it at the start); arm and hand can hide it, and while
+    they hide all of it the eye stays. Contacts and friction are simulated.
 
     A grasp counts when finger and thumb, or finger and palm, enclose the object for a second; the
     support is then taken away and the hand has to hold it for another second. Contact alone, or
@@ -162,7 +163,7 @@ class BabbleGraspEnv(BabbleEnv):
     | `fovea` | 441 | 0 | 1 | edges (Sobel) in the image's middle 63 × 63, in 21 × 21 blocks |
     | `arm` | 2 | 0 | 1 | shoulder and elbow, share of range |
     | `hand` | 2 | 0 | 1 | flexion of thumb and virtual finger, share of range |
-    | `stretch` | 4 | −range | range | equilibrium point minus angle [rad] |
+    | `stretch` | 4 | −range | range | equilibrium point minus angle [rad]; in torque ±1 |
     | `touch` | 3 | 0 | 1 | normal force of palm, thumb, fingers on the object over 20 N |
     | `time` | 1 | 0 | 1 | share of the episode |
 
@@ -193,12 +194,14 @@ class BabbleGraspEnv(BabbleEnv):
     ## Episode end
 
     - `success` (terminated): the hand has held the object without support for a second.
-    - `lost` (terminated): the hand has not held it, or the object is out of the arm's reach.
+    - `lost` (terminated): the hand has not held it, or the object is out of the arm's reach, or,
+      with `obs="goal"`, was dropped after it had been held.
     - `collision` (terminated): arm or hand touches the obstacle, if one was asked for.
     - `timeout`: truncated after 240 steps (12 s), 500 in region `full`.
 
     With `obs="goal"` nothing terminates: after `lost` or `collision` everything stays as it is
-    until the time limit, else the outcome is `success` if the object is at the goal then.
+    until the time limit, and `achieved_goal` is beyond all goals, so that an object dropped at its
+    goal earns nothing; else the outcome is `success` if the object is at the goal then.
 
     ## Info
 

@@ -261,10 +261,6 @@ fn learning_is_eq_7() {
             );
         }
     }
-    assert_eq!(
-        hebb.hand_activity(experiences[0].hand),
-        encode(&hand, experiences[0].hand)
-    );
 }
 
 fn mean(values: &[[f64; 2]]) -> [f64; 2] {

@@ -96,7 +96,7 @@ pub struct Object {
     pub density_kg_m3: f64,
     /// Coulomb friction between object and hand; 0.8 \[C\].
     pub friction: f64,
-    /// Coulomb friction between object and support; 0.5 \[C\].
+    /// Coulomb friction between object and support, at most that of the object; 0.5 \[C\].
     pub support_friction: f64,
     /// Damping of its motion \[1/s\]; 0.5 \[C\].
     pub linear_damping: f64,
@@ -296,6 +296,14 @@ impl Body {
             ("contact.substeps", substeps, 1.0, 100.0),
         ] {
             within(field, value, low, high)?;
+        }
+        // The last segment's round end is its tip.
+        let radius = self.arm.half_width_m.min(0.4 * self.hand.finger_spacing_m);
+        for (field, tip) in [
+            ("hand.finger_m[3]", self.hand.finger_m[3]),
+            ("hand.thumb_m[3]", self.hand.thumb_m[3]),
+        ] {
+            within(field, tip, radius + 1e-4, 1.0)?;
         }
         Ok(())
     }

@@ -155,6 +155,16 @@ fn thresholds_by_hand() {
     assert_eq!(with_misses(20, 11, true), (None, None));
     assert_eq!(with_misses(40, 19, false), (Some(20), Some((40, true))));
     assert_eq!(with_misses(40, 20, false), (Some(20), Some((22, false))));
+    // A share of 0.95 must be exceeded too: 190 of 200 do not, though 1 − 0.95 is not exact.
+    let strict = GraspNumbers {
+        held_share: 0.95,
+        ..numbers
+    };
+    let mut history = vec![(10, true); 40];
+    history[20].0 = 0;
+    assert_eq!(played(&strict, &history), (Some(20), Some((21, false))));
+    history[20].0 = 1;
+    assert_eq!(played(&strict, &history), (Some(20), Some((40, true))));
 }
 
 /// Wedged elsewhere than before the palm, nothing is enclosed, however long it lasts.

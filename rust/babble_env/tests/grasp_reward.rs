@@ -265,8 +265,8 @@ fn stands_still(env: &mut Batch<GraspTask>, outcome: Outcome, towards: [f64; 4])
 }
 
 /// Goal form: after a collision arm, object and senses stand as they are until the time limit,
-/// whatever the actions, and that is no success, even with the object at its goal. Catches a hand
-/// that slips off and earns the goal.
+/// whatever the actions, and that is no success and earns nothing, even with the object at its goal.
+/// Catches a hand that slips off, and a failure at the goal that pays for the rest of the episode.
 #[test]
 fn a_collision_freezes_the_goal_form() {
     for control in CONTROLS {
@@ -289,7 +289,7 @@ fn a_collision_freezes_the_goal_form() {
             Outcome::Collision,
             task.robot.open_hand([1.2, 0.8]),
         );
-        assert_eq!(record(&env).step.reward, 0.0);
+        assert_eq!(record(&env).step.reward, -1.0);
         assert!(!state(&env).is_success && state(&env).ever_success);
     }
 }

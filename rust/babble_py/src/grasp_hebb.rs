@@ -43,6 +43,10 @@ impl GraspHebb {
         convert::json(&GraspHebbConfig::default())
     }
 
+    /// Time that one babble takes \[s\].
+    #[classattr]
+    const BABBLE_S: f64 = grasp::babbling::BABBLE_S;
+
     /// Its numbers, as JSON.
     fn config(&self) -> PyResult<String> {
         convert::json(self.network.config())

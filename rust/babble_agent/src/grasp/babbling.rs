@@ -14,6 +14,8 @@ const RAREST: u64 = 1_000;
 /// \[C\], in which the arm makes 86 % of its way.
 const CLOSING_S: f64 = 2.0;
 const MOVING_S: f64 = 2.0;
+/// Time that one babble takes \[s\].
+pub const BABBLE_S: f64 = CLOSING_S + MOVING_S;
 
 /// Equilibrium points of thumb and virtual finger as the paper counts them: opening angles,
 /// EP = 90° − flexion \[deg\].

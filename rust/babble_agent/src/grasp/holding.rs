@@ -22,7 +22,7 @@ pub struct Trial {
     pub flexion: [f64; 2],
 }
 
-/// Trials with the seeds 0, 1, … `n`: the reflex closes on an object of `diameter` \[m\] in a random
+/// `n` trials with the seeds 0, 1, …: the reflex closes on an object of `diameter` \[m\] in a random
 /// posture, the support goes, and the arm moves for 10 s to a random posture every half second.
 ///
 /// # Errors

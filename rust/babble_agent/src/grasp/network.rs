@@ -5,7 +5,7 @@ use babble_brain::maps::{MapConfig, PopulationMap};
 use babble_env::grasp::FOVEA_NEURONS;
 use serde::{Deserialize, Serialize};
 
-use super::babbling::{Experience, HandPosture};
+use super::babbling::Experience;
 use crate::error::AgentError;
 
 /// Numbers of the maps and the learning rule.
@@ -174,14 +174,6 @@ impl GraspHebb {
             arm: self.arm.read_out(&self.recall_arm(eye)?),
             hand: self.hand.read_out(&self.recall_hand(fovea)?),
         })
-    }
-
-    /// What Eq. 3 makes of a hand posture: activity of the hand's map.
-    #[must_use]
-    pub fn hand_activity(&self, hand: HandPosture) -> Vec<f32> {
-        let mut a = vec![0.0; self.hand.len()];
-        self.hand.encode(hand.map(f64::from), &mut a);
-        a
     }
 }
 

@@ -62,7 +62,8 @@ impl GraspRequest {
     pub fn draw(&self, task: &GraspTask, stream: &mut Stream) -> Result<GraspCase, EnvError> {
         self.check(task)?;
         let placed = self.start.is_some() && self.object.is_some();
-        let tries = if placed && self.diameter.is_some() {
+        let carried = !task.options.goal || self.goal.is_some();
+        let tries = if placed && carried && self.diameter.is_some() {
             1
         } else {
             MAX_TRIES
@@ -76,7 +77,7 @@ impl GraspRequest {
             }
         }
         match last {
-            // The places were given, and no diameter fits between them.
+            // The places were given, and no diameter or goal fits between them.
             Some(error) if placed => Err(error),
             last => Err(EnvError::NoGraspCase {
                 tries,
@@ -85,14 +86,14 @@ impl GraspRequest {
         }
     }
 
-    /// Draws what is not given, always all of it, so that a request changes nothing else.
+    /// Draws what is not given.
     fn fill(&self, task: &GraspTask, stream: &mut Stream) -> GraspCase {
         let region = task.region();
         let diameter = task.draw_diameter(stream);
         let object = draw_point(region, stream);
         let start = draw_start(task, region, stream);
         let object = self.object.unwrap_or(object);
-        let goal = task.options.goal.then(|| draw_goal(task, object, stream));
+        let goal = task.options.goal.then(|| draw_point(region, stream));
         GraspCase {
             start: self.start.unwrap_or(start),
             object,
@@ -169,6 +170,9 @@ fn playable(task: &GraspTask, case: &GraspCase, request: &GraspRequest) -> Resul
             problem: format!("{:?} m cannot be brought to the palm", case.object),
         });
     }
+    if let Some(goal) = case.goal.filter(|_| request.goal.is_none()) {
+        check_goal(task, case, goal)?;
+    }
     let Some(obstacle) = &case.obstacle else {
         return Ok(());
     };
@@ -182,6 +186,22 @@ fn playable(task: &GraspTask, case: &GraspCase, request: &GraspRequest) -> Resul
         problem: format!(
             "it is {arm:.4} m from the arm at the start and {object:.4} m from the object"
         ),
+    })
+}
+
+/// A drawn goal is some way off, and some posture brings the object there.
+fn check_goal(task: &GraspTask, case: &GraspCase, goal: [f64; 2]) -> Result<(), EnvError> {
+    let [x, y] = [0, 1].map(|i| goal[i] - case.object[i]);
+    let clear = case.obstacle.is_none_or(|obstacle| {
+        (obstacle.centre - Vector2::from(goal)).norm() > obstacle.radius + case.radius()
+    });
+    let reachable = task.grasp_posture(goal, case.radius()).is_some();
+    if clear && reachable && libm::hypot(x, y) >= CARRY_M {
+        return Ok(());
+    }
+    Err(EnvError::Case {
+        what: "goal",
+        problem: format!("{goal:?} m is within {CARRY_M} m of the object, or cannot be reached"),
     })
 }
 
@@ -200,16 +220,4 @@ fn draw_start(task: &GraspTask, region: &RegionNumbers, stream: &mut Stream) -> 
         let (lower, upper) = (task.arm.lower[i], task.arm.upper_limit[i]);
         stream.uniform(low.clamp(lower, upper), high.clamp(lower, upper))
     })
-}
-
-fn draw_goal(task: &GraspTask, object: [f64; 2], stream: &mut Stream) -> [f64; 2] {
-    let far = |[x, y]: [f64; 2]| libm::hypot(x - object[0], y - object[1]) >= CARRY_M;
-    let mut goal = draw_point(task.region(), stream);
-    for _ in 0..MAX_TRIES {
-        if far(goal) {
-            break;
-        }
-        goal = draw_point(task.region(), stream);
-    }
-    goal
 }

@@ -61,12 +61,12 @@ impl Enclosure {
             self.recent.remove(0);
         }
         self.recent.push(contacts);
-        let whole = f64::from(numbers.hold_steps * numbers.physics_steps);
+        let whole = numbers.hold_steps * numbers.physics_steps;
         match self.grip {
             Grip::Open => {
                 let enclosing = self.sum(|contacts| contacts.enclosing);
                 let full = self.recent.len() == window;
-                if full && in_hand && enclosing >= numbers.enclosed_share * whole {
+                if full && in_hand && enclosing >= numbers.enclosed_share * f64::from(whole) {
                     self.grip = Grip::Tried(0);
                     return true;
                 }
@@ -74,7 +74,9 @@ impl Enclosure {
             Grip::Tried(steps) => {
                 self.missed += numbers.physics_steps - u32::from(contacts.enclosing);
                 let steps = steps + 1;
-                self.grip = if f64::from(self.missed) >= (1.0 - numbers.held_share) * whole {
+                // With no further miss it would still not exceed the share.
+                let most = f64::from(whole.saturating_sub(self.missed));
+                self.grip = if most <= numbers.held_share * f64::from(whole) {
                     Grip::Failed
                 } else if steps == numbers.hold_steps {
                     Grip::Held

@@ -444,8 +444,13 @@ impl GraspState {
         terms
     }
 
+    /// Where the object is; once it failed to be carried, beyond all goals, so that an object dropped
+    /// at its goal earns nothing.
     fn achieved(&self, task: &GraspTask) -> [f32; 2] {
-        let reach = (task.arm.length() + 0.2) as f32;
+        let reach = task.goal_bound() as f32;
+        if task.options.goal && self.failed() {
+            return [reach; 2];
+        }
         let centre = task.robot.object(&self.world);
         [centre.x, centre.y].map(|x| (x as f32).clamp(-reach, reach))
     }

@@ -94,8 +94,7 @@ fn senses(task: &GraspTask) -> Vec<Entry> {
 }
 
 fn goals(task: &GraspTask) -> Vec<Entry> {
-    // A little beyond the arm's reach, where an object can be pushed.
-    let reach = task.arm.length() + 0.2;
+    let reach = task.goal_bound();
     let goal = |name, description| Entry {
         name,
         labels: vec!["x", "y"],
@@ -105,7 +104,10 @@ fn goals(task: &GraspTask) -> Vec<Entry> {
         description,
     };
     vec![
-        goal("achieved_goal", "position of the object's centre"),
+        goal(
+            "achieved_goal",
+            "position of the object's centre; at the bounds once it was lost",
+        ),
         goal("desired_goal", "where it is to be carried"),
     ]
 }

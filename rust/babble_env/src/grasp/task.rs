@@ -2,6 +2,7 @@
 
 use babble_body::config::Muscles;
 use babble_body::eye::Eye;
+use babble_body::joints::Joint;
 use babble_body::robot::World;
 use babble_body::{PlanarArm, Robot};
 use image::RgbImage;
@@ -108,6 +109,7 @@ impl GraspTask {
             });
         }
         crate::options::check_max_episode_steps(options.max_episode_steps)?;
+        check_locks(&config)?;
         Ok(Self {
             robot: Robot::new(&config.body, config.grasp.physics_step_s()),
             arm: PlanarArm::new(&config.body),
@@ -115,6 +117,13 @@ impl GraspTask {
             config,
             options,
         })
+    }
+
+    /// Greatest coordinate of a goal \[m\]: a little beyond the arm's reach, where an object can be
+    /// pushed.
+    #[must_use]
+    pub fn goal_bound(&self) -> f64 {
+        self.arm.length() + 0.2
     }
 
     /// Where objects lie and arms start.
@@ -230,5 +239,18 @@ impl GraspTask {
 
     fn pocket_in_forearm(&self, radius: f64) -> Vector2<f64> {
         self.robot.pocket(radius).xy() + Vector2::new(self.robot.palm_centre(), 0.0)
+    }
+}
+
+/// The hand's own joints flex as the grip has it, and all others are straight: a lock that reaching
+/// can have would go unseen here.
+fn check_locks(config: &Config) -> Result<(), EnvError> {
+    let bent = |joint: &Joint| joint.locked_deg.is_some_and(|angle| angle != 0.0);
+    match config.body.joints.iter().find(|(_, joint)| bent(joint)) {
+        None => Ok(()),
+        Some((name, _)) => Err(EnvError::Config {
+            field: format!("body.joints.{name}.locked_deg"),
+            problem: "must be 0 in grasping, whose hand is set by body.grip".to_owned(),
+        }),
     }
 }

@@ -137,7 +137,7 @@ PRESETS: dict[str, Preset] = {
         env_id="BabbleGrasp-v0",
         senses=("eye", "fovea", "arm", "hand", "stretch", "touch", "time"),
         num_envs=128,
-        steps=3_000_000,
+        steps=2_500_000,
         settings={
             "n_steps": 64,
             "batch_size": 1024,

@@ -11,6 +11,7 @@ from gym_babble import contenders, evaluate, scenarios
 from gym_babble.compare import CONTENDERS, STUDIES, Played, Settings, compare
 from gym_babble.config import Config
 from gym_babble.errors import ConfigError
+from gym_babble.ppo import PRESETS
 from gym_babble.tables import OUTCOMES
 from gym_babble.tasks import GRASP
 
@@ -167,6 +168,16 @@ def test_the_stored_row_is_the_studys(grasping):
         len(run["curve"]) for run in study["runs"]
     ]
     assert not isinstance(result, Played)
+
+
+def test_the_study_is_a_whole_one_of_todays_preset():
+    # Catches a trial run that was left in the package, and a preset that was tuned afterwards.
+    study = json.loads((STUDIES / "ppo_grasp.json").read_text(encoding="utf-8"))
+    assert study["presets"] == {"grasp": PRESETS["grasp"].to_json()}
+    assert [run["seed"] for run in study["runs"]] == [0, 1, 2]
+    for run in study["runs"]:
+        assert run["steps"] == PRESETS["grasp"].steps
+        assert run["cases"] == 1000
 
 
 def test_a_study_of_another_body_is_left_out():

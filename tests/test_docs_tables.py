@@ -270,8 +270,11 @@ def test_the_stub_has_the_extensions_names(repository):
     assert {*classes, *functions, "__version__", "debug_build"} == set(_core.__all__)
     for name, stub in classes.items():
         ours = {part.name: part for part in stub.body if isinstance(part, ast.FunctionDef)}
+        constants = {p.target.id for p in stub.body if isinstance(p, ast.AnnAssign)}
         theirs = vars(getattr(_core, name))
-        assert set(ours) - {"__new__"} == {n for n in theirs if not n.startswith("__")}, name
+        assert {*ours, *constants} - {"__new__"} == {n for n in theirs if not n.startswith("__")}, (
+            name
+        )
         for method, runtime in theirs.items():
             if method in set(ours) - {"__new__"} and getattr(runtime, "__text_signature__", None):
                 arguments = [a.arg for a in ours[method].args.args]

@@ -125,6 +125,12 @@ def test_babbled_hands_are_those_of_their_objects(agent):
     left = agent.babbled
     assert left["eye"].shape == (120, 2)
     assert left["fovea"].shape == (120, 441)
+    empty = HebbGrasping().babbled
+    assert {name: (part.shape[1:], part.dtype) for name, part in left.items()} == {
+        name: (part.shape[1:], part.dtype) for name, part in empty.items()
+    }
+    again = agent.decide(left["eye"].astype(float), left["fovea"])  # Of any kind of number.
+    assert (again == agent.decide(left["eye"], left["fovea"])).all()
     small, big = (left["hand"][left["diameter"] == d].mean(axis=0) for d in (0.024, 0.06))
     assert len(small) == 2
     assert (big > small + 10).all()  # A bigger object leaves the hand more open.

@@ -196,14 +196,13 @@ class HebbGrasping(GraspAgent):
         Shoulder and elbow as shares of their ranges, and equilibrium points of thumb and finger as
         the paper counts them, EP = 90° − flexion [deg].
         """
-        return self._hebb.decide(eyes, foveae)
+        return self._hebb.decide(
+            np.ascontiguousarray(eyes, np.float32), np.ascontiguousarray(foveae, np.float32)
+        )
 
     def plan(self, senses: NDArray[np.float32]) -> NDArray[np.float64]:
         """Shoulder, elbow, and flexions of thumb and finger (n, 4) [rad], for flat senses."""
-        recalled = self.decide(
-            np.ascontiguousarray(senses[:, self._columns["eye"]]),
-            np.ascontiguousarray(senses[:, self._columns["fovea"]]),
-        )
+        recalled = self.decide(senses[:, self._columns["eye"]], senses[:, self._columns["fovea"]])
         low, high = self._choices.ranges[:2].T
         arm = low + recalled[:, :2] * (high - low)
         # A hand around the object would press with no force at its own posture.
@@ -269,8 +268,11 @@ class HebbGrasping(GraspAgent):
         `eye` (n, 2), `fovea` (n, 441), `arm` (n, 2), `hand` (n, 2) [deg] and `diameter` (n,) [m].
         """
         shapes = {"eye": (0, 2), "fovea": (0, 441), "arm": (0, 2), "hand": (0, 2), "diameter": (0,)}
+        kinds = {"diameter": np.float64}
         return {
-            name: np.concatenate([np.empty(shape), *(part[name] for part in self._babbled)])
+            name: np.concatenate(
+                [np.empty(shape, kinds.get(name, np.float32)), *(p[name] for p in self._babbled)]
+            )
             for name, shape in shapes.items()
         }
 

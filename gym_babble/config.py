@@ -183,16 +183,16 @@ class Object:
 
 @dataclass(frozen=True, kw_only=True)
 class Contact:
-    """How hard surfaces are, and how contacts are solved."""
+    """How hard surfaces are: each contact is a spring, a damper and Coulomb friction."""
 
-    frequency_hz: float = 120.0
-    """Natural frequency of a contact's spring [Hz] [C]. Higher is harder."""
-    damping_ratio: float = 5.0
-    """Damping ratio of a contact's spring [C]. Higher lets surfaces sink in further."""
-    length_unit_m: float = 0.1
-    """Length that counts as one in the engine's tolerances [m] [C]."""
-    substeps: int = 1
-    """Substeps of the solver in a physics step [C]. Two cost twice as much."""
+    stiffness_n_m: float = 20_000.0
+    """Stiffness of a contact [N/m] [C]."""
+    relaxation_s: float = 0.013
+    """Damping of a contact divided by its stiffness: the time in which surfaces part when nothing
+    presses them [s] [C]."""
+    stiction_m_s: float = 1e-4
+    """Sliding speed at which friction is 0.7 of its full force [m/s] [C]. What seems to stick creeps
+    at a fraction of it."""
 
 
 def _paper_joints() -> dict[str, Joint]:
@@ -203,6 +203,9 @@ def _paper_joints() -> dict[str, Joint]:
 class Body:
     """The whole body and the things in its world."""
 
+    engine: str = "tree"
+    """What steps the world in grasping [C]: an engine made for this robot, or rapier3d, its
+    reference, some ten times slower."""
     arm: Arm = field(default_factory=Arm)
     hand: Hand = field(default_factory=Hand)
     joints: dict[str, Joint] = field(default_factory=_paper_joints)

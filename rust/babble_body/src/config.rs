@@ -104,18 +104,28 @@ pub struct Object {
     pub angular_damping: f64,
 }
 
-/// How hard surfaces are, and how contacts are solved.
+/// How hard surfaces are. Each contact is a spring and a damper, both implicit, and Coulomb friction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
-    /// Natural frequency of a contact's spring \[Hz\]; 120 \[C\]. Higher is harder.
-    pub frequency_hz: f64,
-    /// Damping ratio of a contact's spring; 5 \[C\]. Higher lets surfaces sink in further.
-    pub damping_ratio: f64,
-    /// Length that counts as one in the engine's tolerances \[m\]; 0.1 \[C\].
-    pub length_unit_m: f64,
-    /// Substeps of the solver in a physics step; 1 \[C\]. Two cost twice as much.
-    pub substeps: usize,
+    /// Stiffness of a contact \[N/m\]; 20 000 \[C\].
+    pub stiffness_n_m: f64,
+    /// Damping of a contact divided by its stiffness: the time in which surfaces part when nothing
+    /// presses them \[s\]; 0.013 \[C\].
+    pub relaxation_s: f64,
+    /// Sliding speed at which friction is 0.7 of its full force \[m/s\]; 0.0001 \[C\]. What seems to
+    /// stick creeps at a fraction of it.
+    pub stiction_m_s: f64,
+}
+
+/// What steps arm, hand and object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Engine {
+    /// Made for this robot: a tree of joints about the vertical, in double precision.
+    Tree,
+    /// rapier3d with settings of its own for contacts: the reference, some ten times slower.
+    Rapier,
 }
 
 /// The vertical cylinder in the way.
@@ -140,6 +150,8 @@ pub struct Target {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Body {
+    /// What steps the world in grasping; `tree` \[C\].
+    pub engine: Engine,
     /// Upper arm and forearm.
     pub arm: Arm,
     /// Palm, thumb and fingers.
@@ -158,7 +170,7 @@ pub struct Body {
     pub grip: Grip,
     /// What is grasped.
     pub object: Object,
-    /// How contacts are solved.
+    /// How hard surfaces are.
     pub contact: Contact,
 }
 
@@ -168,6 +180,7 @@ impl Body {
     #[must_use]
     pub fn paper() -> Self {
         Self {
+            engine: Engine::Tree,
             arm: Arm {
                 upper_arm_m: 0.15,
                 forearm_m: 0.13,
@@ -218,10 +231,9 @@ impl Body {
                 angular_damping: 20.0,
             },
             contact: Contact {
-                frequency_hz: 120.0,
-                damping_ratio: 5.0,
-                length_unit_m: 0.1,
-                substeps: 1,
+                stiffness_n_m: 20_000.0,
+                relaxation_s: 0.013,
+                stiction_m_s: 1e-4,
             },
         }
     }
@@ -266,7 +278,6 @@ impl Body {
         validate_muscles("grip.arm_muscles", &grip.arm_muscles)?;
         validate_muscles("grip.hand_muscles", &grip.hand_muscles)?;
         let [open, closed] = grip.flexion_deg;
-        let substeps = contact.substeps as f64;
         for (field, value, low, high) in [
             ("grip.thumb_base_m[0]", grip.thumb_base_m[0], -0.1, 0.2),
             ("grip.thumb_base_m[1]", grip.thumb_base_m[1], -0.1, 0.1),
@@ -290,10 +301,9 @@ impl Body {
             ),
             ("object.linear_damping", object.linear_damping, 0.0, 1e3),
             ("object.angular_damping", object.angular_damping, 0.0, 1e3),
-            ("contact.frequency_hz", contact.frequency_hz, 1.0, 1e4),
-            ("contact.damping_ratio", contact.damping_ratio, 0.1, 100.0),
-            ("contact.length_unit_m", contact.length_unit_m, 1e-3, 10.0),
-            ("contact.substeps", substeps, 1.0, 100.0),
+            ("contact.stiffness_n_m", contact.stiffness_n_m, 10.0, 1e7),
+            ("contact.relaxation_s", contact.relaxation_s, 0.0, 1.0),
+            ("contact.stiction_m_s", contact.stiction_m_s, 1e-6, 0.1),
         ] {
             within(field, value, low, high)?;
         }

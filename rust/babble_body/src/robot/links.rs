@@ -36,6 +36,24 @@ pub(super) enum Solid {
     },
 }
 
+impl Solid {
+    /// Its shadow in the plane of motion.
+    pub(super) fn flat(&self) -> Self {
+        let level = |v: &Vector3<f64>| Vector3::new(v.x, v.y, 0.0);
+        match self {
+            Self::Capsule { a, b, radius } => Self::Capsule {
+                a: level(a),
+                b: level(b),
+                radius: *radius,
+            },
+            Self::Cuboid { centre, half } => Self::Cuboid {
+                centre: level(centre),
+                half: *half,
+            },
+        }
+    }
+}
+
 /// Which of the four equilibrium points moves a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Muscle {
@@ -72,6 +90,13 @@ pub(super) struct Link {
     /// Whether the joint turns clockwise.
     pub(super) clockwise: bool,
     pub(super) solids: Vec<(Part, Solid)>,
+}
+
+impl Link {
+    /// 1 if the joint turns counter-clockwise, −1 if clockwise.
+    pub(super) const fn sense(&self) -> f64 {
+        if self.clockwise { -1.0 } else { 1.0 }
+    }
 }
 
 /// Forearm and palm.

@@ -1,53 +1,35 @@
-//! The robot that grasps, and its world: arm, hand, object, support and obstacle in a physics
-//! engine, moved by the muscles of Eq. 2.
+//! The robot that grasps, and its world: arm, hand, object, support and obstacle, moved by the
+//! muscles of Eq. 2.
 //!
-//! [`Robot`] never changes; [`World`] is all that does. A new world is a copy of the robot's
-//! template, with arm, hand and object put where a case has them.
+//! [`Robot`] never changes; [`World`] is all that does. Two engines step a world: `tree`, which is
+//! made for this robot, and `rapier`, a general one, its reference.
 
-mod build;
 mod clearance;
+mod kinematics;
 mod links;
+mod muscles;
+mod rapier;
 mod scene;
-mod seam;
 mod touch;
+mod tree;
 mod world;
 
 use nalgebra::Vector3;
-use rapier3d::prelude::*;
 
-use crate::config::Body;
+use crate::config::{Body, Engine};
 use crate::obstacle::Obstacle;
+pub use kinematics::Frame;
+use kinematics::{MAX_JOINTS, place};
 pub use links::Part;
 use links::{FOREARM, Link};
-pub use seam::Frame;
-use seam::{from_pose, from_vector, vector};
+pub use muscles::{Drive, Posture, Pull, towards};
 pub use touch::Touch;
+use touch::SLOTS;
 pub use world::World;
+use world::MovingBall;
 
-/// Angular x: the free axis of a joint in its own frame.
-const FREE_AXIS: usize = 3;
-
-/// Angles of shoulder, elbow, thumb and virtual finger \[rad\]: of the arm's joints, and flexions of
-/// the hand's.
-pub type Posture = [f64; 4];
-
-/// What moves a joint, or every joint of a digit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Pull {
-    /// Muscles with this equilibrium point \[rad\], Eq. 2.
-    EquilibriumPoint(f64),
-    /// This torque on top of the muscles' damping \[N·m\].
-    Torque(f64),
-}
-
-/// What moves shoulder, elbow, thumb and virtual finger.
-pub type Drive = [Pull; 4];
-
-/// Muscles that pull towards a posture.
-#[must_use]
-pub fn towards(posture: Posture) -> Drive {
-    posture.map(Pull::EquilibriumPoint)
-}
+/// Earth's, downwards \[m/s²\]. It acts on the object alone: muscles compensate for it (Sect. II-B).
+const GRAVITY: f64 = 9.81;
 
 /// A sphere that can be grasped.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -76,19 +58,40 @@ pub struct Setup {
 pub struct Robot {
     body: Body,
     links: Vec<Link>,
+    /// What each solid of the links belongs to.
+    parts: Vec<Part>,
     ranges: [[f64; 2]; 4],
-    template: World,
-    parameters: IntegrationParameters,
-    gravity: Vector,
-    bodies: Vec<RigidBodyHandle>,
-    joints: Vec<MultibodyJointHandle>,
-    object: RigidBodyHandle,
-    object_collider: ColliderHandle,
-    support: ColliderHandle,
-    obstacle: ColliderHandle,
+    dt: f64,
+    stepper: Stepper,
+}
+
+#[derive(Debug, Clone)]
+enum Stepper {
+    Tree(tree::Tree),
+    Rapier(Box<rapier::Rapier>),
 }
 
 impl Robot {
+    /// The robot of `body`, stepped by `dt` \[s\].
+    #[must_use]
+    pub fn new(body: &Body, dt: f64) -> Self {
+        let links = links::links(body);
+        Self {
+            ranges: ranges(body),
+            parts: links
+                .iter()
+                .flat_map(|link| link.solids.iter().map(|&(part, _)| part))
+                .collect(),
+            stepper: match body.engine {
+                Engine::Tree => Stepper::Tree(tree::Tree::new(body, &links, dt)),
+                Engine::Rapier => Stepper::Rapier(Box::new(rapier::Rapier::new(body, &links, dt))),
+            },
+            body: body.clone(),
+            links,
+            dt,
+        }
+    }
+
     /// The body it was made from.
     #[must_use]
     pub const fn body(&self) -> &Body {
@@ -99,12 +102,6 @@ impl Robot {
     #[must_use]
     pub const fn ranges(&self) -> &[[f64; 2]; 4] {
         &self.ranges
-    }
-
-    /// Degrees of freedom: 9 with a virtual finger, 18 with independent ones.
-    #[must_use]
-    pub fn degrees_of_freedom(&self) -> usize {
-        self.links.len()
     }
 
     /// The open hand with the arm in a posture \[rad\].
@@ -140,140 +137,85 @@ impl Robot {
     /// A world as `setup` has it, at rest.
     #[must_use]
     pub fn world(&self, setup: &Setup) -> World {
-        let mut world = self.template.clone();
-        self.place_robot(&mut world, setup.posture);
-        self.place_ball(&mut world, &setup.ball);
-        if setup.support {
-            let height = -setup.ball.radius as f32;
-            let support = &mut world.colliders[self.support];
-            support.set_translation(Vector::new(0.0, 0.0, height));
-            support.set_enabled(true);
+        let mut q = [0.0; MAX_JOINTS];
+        for (q, link) in q.iter_mut().zip(&self.links) {
+            *q = setup.posture[link.muscle.index()];
         }
-        if let Some(obstacle) = setup.obstacle {
-            let half = self.body.obstacle.height_m as f32 / 2.0;
-            let collider = &mut world.colliders[self.obstacle];
-            collider.set_shape(SharedShape::cylinder(half, obstacle.radius as f32));
-            collider.set_translation(vector(&obstacle.centre.push(0.0)));
-            collider.set_enabled(true);
+        let [x, y] = setup.ball.centre;
+        World {
+            q,
+            v: [0.0; MAX_JOINTS],
+            ball: MovingBall::at_rest(Vector3::new(x, y, 0.0), setup.ball.radius),
+            support: setup.support,
+            obstacle: setup.obstacle,
+            impulses: [0.0; SLOTS],
+            hit: false,
+            depth: 0.0,
+            rapier: None,
         }
-        world
     }
 
     /// A world with every joint at its angle, in the order of [`Self::joint_angles`] \[rad\], and the
-    /// object at a point \[m\]: to be looked at, not to be stepped.
+    /// object at a point \[m\]: to be looked at.
     #[must_use]
     pub fn posed(&self, joints: &[f32], object: &Vector3<f64>) -> World {
-        let mut world = self.template.clone();
-        self.place_joints(&mut world, joints);
-        world.bodies[self.object].set_translation(vector(object), true);
-        world
-    }
-
-    fn place_robot(&self, world: &mut World, posture: Posture) {
-        let angles: Vec<f32> = self
-            .links
-            .iter()
-            .map(|link| posture[link.muscle.index()] as f32)
-            .collect();
-        self.place_joints(world, &angles);
-        self.drive(world, &towards(posture));
-    }
-
-    /// Turns every joint of the template by an angle \[rad\].
-    fn place_joints(&self, world: &mut World, angles: &[f32]) {
-        let World {
-            bodies,
-            colliders,
-            multibody_joints,
-            ..
-        } = world;
-        let Some((multibody, _)) = multibody_joints.get_mut(self.joints[0]) else {
-            return;
-        };
-        multibody.apply_displacements(angles);
-        multibody.forward_kinematics(bodies, false);
-        multibody.update_rigid_bodies(bodies, true);
-        // The engine moves colliders after a step only: the first one would see the template's.
-        for body in self.bodies.iter().map(|&handle| &bodies[handle]) {
-            for &handle in body.colliders() {
-                let collider = &mut colliders[handle];
-                if let Some(within) = collider.position_wrt_parent() {
-                    collider.set_position(body.position() * within);
-                }
-            }
+        let mut world = self.world(&Setup {
+            posture: [0.0; 4],
+            ball: Ball {
+                centre: [0.0; 2],
+                radius: 0.0,
+            },
+            support: false,
+            obstacle: None,
+        });
+        for (q, &angle) in world.q.iter_mut().zip(joints) {
+            *q = angle.into();
         }
-    }
-
-    fn place_ball(&self, world: &mut World, ball: &Ball) {
-        let [x, y] = ball.centre;
-        let centre = vector(&Vector3::new(x, y, 0.0));
-        world.bodies[self.object].set_translation(centre, true);
-        world.colliders[self.object_collider].set_shape(SharedShape::ball(ball.radius as f32));
+        world.ball.centre = *object;
+        world
     }
 
     /// One physics step.
     pub fn step(&self, world: &mut World, drive: &Drive) {
-        self.drive(world, drive);
-        world.step(self.gravity, &self.parameters);
+        let springs =
+            std::array::from_fn(|i| self.spring(drive, i.min(self.links.len() - 1), world.q[i]));
+        match &self.stepper {
+            Stepper::Tree(tree) => tree.step(world, &springs),
+            Stepper::Rapier(rapier) => rapier.step(world, &springs[..self.links.len()]),
+        }
     }
 
     /// Takes the support away for good.
-    pub fn remove_support(&self, world: &mut World) {
-        world.colliders[self.support].set_enabled(false);
+    pub const fn remove_support(&self, world: &mut World) {
+        world.support = false;
     }
 
     /// Whether the object's support is there.
     #[must_use]
-    pub fn has_support(&self, world: &World) -> bool {
-        world.colliders[self.support].is_enabled()
+    pub const fn has_support(&self, world: &World) -> bool {
+        world.support
     }
 
-    fn drive(&self, world: &mut World, drive: &Drive) {
-        let Some((multibody, _)) = world.multibody_joints.get_mut(self.joints[0]) else {
-            return;
-        };
-        // The root, which does not move, comes first.
-        for (link, joint) in self.links.iter().zip(multibody.links_mut().skip(1)) {
-            let i = link.muscle.index();
-            let kp = link.muscle.settings(&self.body).kp;
-            let joint = &mut joint.joint;
-            let (stiffness, rest) = match drive[i] {
-                Pull::EquilibriumPoint(point) => (kp, point),
-                Pull::Torque(torque) => {
-                    let q = f64::from(joint.coords()[FREE_AXIS]);
-                    torque_as_spring(torque, q, self.ranges[i], kp)
-                }
-            };
-            joint.set_spring(FREE_AXIS, stiffness as f32, rest as f32);
-        }
-    }
-
-    /// Angle of every joint, from the shoulder outwards, the fingers before the thumb \[rad\].
-    pub fn joint_angles<'a>(&'a self, world: &'a World) -> impl Iterator<Item = f64> + 'a {
-        let multibody = world.multibody_joints.get(self.joints[0]);
-        multibody
-            .into_iter()
-            .flat_map(|(multibody, _)| multibody.links().skip(1))
-            .map(|link| f64::from(link.joint().coords()[FREE_AXIS]))
+    /// Angle of every joint, from the shoulder outwards, the fingers before the thumb \[rad\]: 9 with
+    /// a virtual finger, 18 with independent ones.
+    #[must_use]
+    pub fn joint_angles<'a>(&self, world: &'a World) -> &'a [f64] {
+        &world.q[..self.links.len()]
     }
 
     /// Angles of arm and hand; thumb and finger are the means over their joints \[rad\].
     #[must_use]
     pub fn posture(&self, world: &World) -> Posture {
-        self.means(self.joint_angles(world))
+        self.means(&world.q)
     }
 
     /// Speeds of arm and hand, as [`Self::posture`] has the angles \[rad/s\].
     #[must_use]
     pub fn speeds(&self, world: &World) -> Posture {
-        let multibody = world.multibody_joints.get(self.joints[0]);
-        self.means(multibody.into_iter().flat_map(|(multibody, _)| {
-            let velocity = multibody.generalized_velocity();
-            (0..self.links.len()).map(move |i| f64::from(velocity[i]))
-        }))
+        self.means(&world.v)
     }
 
-    fn means(&self, values: impl Iterator<Item = f64>) -> Posture {
+    fn means(&self, values: &[f64]) -> Posture {
         let (mut sums, mut counts) = ([0.0; 4], [0.0; 4]);
         for (link, value) in self.links.iter().zip(values) {
             sums[link.muscle.index()] += value;
@@ -284,20 +226,20 @@ impl Robot {
 
     /// Centre of the object \[m\].
     #[must_use]
-    pub fn object(&self, world: &World) -> Vector3<f64> {
-        from_vector(world.bodies[self.object].translation())
+    pub const fn object(&self, world: &World) -> Vector3<f64> {
+        world.ball.centre
     }
 
     /// Velocity of the object \[m/s\].
     #[must_use]
-    pub fn object_velocity(&self, world: &World) -> Vector3<f64> {
-        from_vector(world.bodies[self.object].linvel())
+    pub const fn object_velocity(&self, world: &World) -> Vector3<f64> {
+        world.ball.velocity
     }
 
     /// The palm: its centre, x towards the fingers, y out of the side that grasps.
     #[must_use]
     pub fn palm(&self, world: &World) -> Frame {
-        let forearm = self.frame(world, FOREARM);
+        let forearm = place(&self.links[..=FOREARM], |i| world.q[i])[FOREARM].frame();
         Frame {
             origin: forearm.world_from_local(&Vector3::new(self.palm_centre(), 0.0, 0.0)),
             ..forearm
@@ -317,21 +259,14 @@ impl Robot {
         let along = 0.12 * links::palm_length(&self.body);
         Vector3::new(along, self.body.arm.half_width_m + radius, 0.0)
     }
-
-    fn frame(&self, world: &World, link: usize) -> Frame {
-        from_pose(world.bodies[self.bodies[link]].position())
-    }
 }
 
-/// Stiffness and rest angle of a spring that pulls a joint at `q` \[rad\] with `torque` \[N·m\], and
-/// of the stop behind the end of its range.
-///
-/// A spring, as the engine adds those implicitly; so soft that it hardly varies within a step.
-fn torque_as_spring(torque: f64, q: f64, [low, high]: [f64; 2], kp: f64) -> (f64, f64) {
-    const SOFT: f64 = 1e-3;
-    if (q > high && torque > 0.0) || (q < low && torque < 0.0) {
-        return (kp, q.clamp(low, high));
-    }
-    let stiffness = SOFT * kp;
-    (stiffness, q + torque / stiffness)
+/// Lowest and highest equilibrium point of shoulder, elbow, thumb and finger \[rad\].
+fn ranges(body: &Body) -> [[f64; 2]; 4] {
+    let arm = |name: &str| {
+        let joint = &body.joints[name];
+        [joint.lower_deg, joint.upper_deg].map(f64::to_radians)
+    };
+    let hand = body.grip.flexion_deg.map(f64::to_radians);
+    [arm("shoulder"), arm("elbow"), hand, hand]
 }

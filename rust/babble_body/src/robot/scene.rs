@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
+use super::kinematics::{Frame, place};
 use super::links::{Part, Solid};
-use super::seam::Frame;
 use super::{Robot, World};
 use crate::eye::{Material, Primitive, Shape};
 use crate::pose::{FOREARM, SKIN, SLEEVE};
@@ -11,8 +11,9 @@ use crate::pose::{FOREARM, SKIN, SLEEVE};
 impl Robot {
     /// Adds arm and hand, the upper arm first.
     pub fn push_visible(&self, world: &World, scene: &mut Vec<Primitive>) {
-        for (i, link) in self.links.iter().enumerate() {
-            let frame = self.frame(world, i);
+        let placed = place(&self.links, |i| world.q[i]);
+        for (i, (link, placed)) in self.links.iter().zip(&placed).enumerate() {
+            let frame = placed.frame();
             for (part, solid) in &link.solids {
                 scene.push(Primitive::new(shape(solid, &frame), material(*part, i)));
             }

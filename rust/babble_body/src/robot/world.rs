@@ -1,65 +1,55 @@
-//! The world's state: all that the physics engine carries from one step to the next.
+//! The world's state: all that changes from one physics step to the next.
 
-use std::fmt;
-
-use rapier3d::prelude::*;
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Everything that moves, and what the engine remembers of it. A copy, or what was written and read
-/// again, continues bit for bit.
-#[derive(Clone, Default, Serialize, Deserialize)]
+use super::kinematics::MAX_JOINTS;
+use super::rapier;
+use super::touch::SLOTS;
+use crate::obstacle::Obstacle;
+
+/// Everything that moves, and what the next step needs of the last. A copy, or what was written and
+/// read again, continues bit for bit.
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct World {
-    pub(super) islands: IslandManager,
-    pub(super) broad_phase: DefaultBroadPhase,
-    pub(super) narrow_phase: NarrowPhase,
-    pub(super) bodies: RigidBodySet,
-    pub(super) colliders: ColliderSet,
-    pub(super) impulse_joints: ImpulseJointSet,
-    pub(super) multibody_joints: MultibodyJointSet,
-    pub(super) soft_bodies: SoftBodySet,
-    #[serde(skip)]
-    pub(super) workspace: Workspace,
+    /// Angles of the joints \[rad\].
+    pub(super) q: [f64; MAX_JOINTS],
+    /// Their speeds \[rad/s\].
+    pub(super) v: [f64; MAX_JOINTS],
+    pub(super) ball: MovingBall,
+    /// Whether the object's support is there.
+    pub(super) support: bool,
+    pub(super) obstacle: Option<Obstacle>,
+    /// What touched the object in the last step: impulses of the contacts' normals \[N·s\].
+    pub(super) impulses: [f64; SLOTS],
+    /// Whether arm or hand touched the obstacle in it.
+    pub(super) hit: bool,
+    /// How deep the object was in arm and hand at its start \[m\].
+    pub(super) depth: f64,
+    /// What rapier remembers, if it is the engine.
+    pub(super) rapier: Option<Box<rapier::State>>,
 }
 
-impl fmt::Debug for World {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("World")
-            .field("bodies", &self.bodies.len())
-            .field("colliders", &self.colliders.len())
-            .finish_non_exhaustive()
-    }
+/// A sphere in motion. How it is turned makes no difference.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub(super) struct MovingBall {
+    /// \[m\]
+    pub(super) radius: f64,
+    /// \[m\]
+    pub(super) centre: Vector3<f64>,
+    /// \[m/s\]
+    pub(super) velocity: Vector3<f64>,
+    /// Angular velocity \[rad/s\].
+    pub(super) spin: Vector3<f64>,
 }
 
-/// The engine's scratch memory, which holds nothing between steps.
-#[derive(Default)]
-pub(super) struct Workspace {
-    pipeline: PhysicsPipeline,
-    ccd: CCDSolver,
-}
-
-impl Clone for Workspace {
-    fn clone(&self) -> Self {
-        Self::default()
-    }
-}
-
-impl World {
-    /// One physics step.
-    pub(super) fn step(&mut self, gravity: Vector, parameters: &IntegrationParameters) {
-        self.workspace.pipeline.step(
-            gravity,
-            parameters,
-            &mut self.islands,
-            &mut self.broad_phase,
-            &mut self.narrow_phase,
-            &mut self.bodies,
-            &mut self.colliders,
-            &mut self.impulse_joints,
-            &mut self.multibody_joints,
-            &mut self.soft_bodies,
-            &mut self.workspace.ccd,
-            &(),
-            &(),
-        );
+impl MovingBall {
+    pub(super) fn at_rest(centre: Vector3<f64>, radius: f64) -> Self {
+        Self {
+            radius,
+            centre,
+            velocity: Vector3::zeros(),
+            spin: Vector3::zeros(),
+        }
     }
 }

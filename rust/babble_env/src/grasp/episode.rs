@@ -469,7 +469,8 @@ impl GraspState {
             joints: task
                 .robot
                 .joint_angles(&self.world)
-                .map(|q| q as f32)
+                .iter()
+                .map(|&q| q as f32)
                 .collect(),
             object: [object.x, object.y, object.z].map(|x| x as f32),
             palm: [palm.x as f32, palm.y as f32],

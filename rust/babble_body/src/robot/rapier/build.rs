@@ -3,86 +3,67 @@
 use nalgebra::{Unit, Vector3};
 use rapier3d::prelude::*;
 
-use super::links::{self, Link, Solid};
 use super::seam::{hinge, vector};
-use super::touch::Thing;
-use super::world::World;
-use super::{FREE_AXIS, Robot};
-use crate::config::{Body, Contact};
+use super::{FREE_AXIS, OBJECT, Rapier, State};
+use crate::config::Body;
+use crate::robot::links::{Link, Solid};
+use crate::robot::touch::{OBSTACLE, SUPPORT};
 
-/// Earth's, downwards \[m/s²\]. It acts on the object alone: muscles compensate for it (Sect. II-B).
-const GRAVITY: f32 = 9.81;
-/// Radius of the template's object and obstacle, which every case replaces \[m\].
+/// Radius of the template's object and obstacle, which every world replaces \[m\].
 const ANY_RADIUS: f32 = 0.03;
 
-impl Robot {
+impl Rapier {
     /// The robot of `body`, stepped by `dt` \[s\].
-    #[must_use]
-    pub fn new(body: &Body, dt: f64) -> Self {
-        let links = links::links(body);
-        let mut world = World::default();
-        let shoulder = world.bodies.insert(RigidBodyBuilder::fixed());
+    pub(in crate::robot) fn new(body: &Body, links: &[Link], dt: f64) -> Self {
+        let mut state = State::default();
+        let shoulder = state.bodies.insert(RigidBodyBuilder::fixed());
         let mut bodies: Vec<RigidBodyHandle> = Vec::with_capacity(links.len());
         let mut joints = Vec::with_capacity(links.len());
-        for link in &links {
-            let handle = insert_link(&mut world, body, link);
+        let mut slot = 0;
+        for link in links {
+            let handle = insert_link(&mut state, body, link, &mut slot);
             let parent = link.parent.map_or(shoulder, |parent| bodies[parent]);
-            let joint = world
+            let joint = state
                 .multibody_joints
                 .insert(parent, handle, joint(link), true);
             // Each link is new, so no joint closes a loop.
             joints.extend(joint);
             bodies.push(handle);
         }
-        set_damping(&mut world, body, &links, &joints);
-        let (object, object_collider) = insert_object(&mut world, body);
-        let support = insert_support(&mut world, body);
-        let obstacle = insert_obstacle(&mut world, body);
-        let mut robot = Self {
-            ranges: ranges(body),
-            body: body.clone(),
-            links,
-            template: world,
-            parameters: parameters(&body.contact, dt),
-            gravity: Vector::new(0.0, 0.0, -GRAVITY),
+        set_damping(&mut state, body, links, &joints);
+        let (object, object_collider) = insert_object(&mut state, body);
+        let support = insert_support(&mut state, body);
+        let obstacle = insert_obstacle(&mut state, body);
+        let parameters = parameters(dt);
+        // One step far from everything, so that a copy's buffers have their sizes.
+        state.step(Vector::ZERO, &parameters);
+        Self {
+            template: state,
+            parameters,
             bodies,
             joints,
             object,
             object_collider,
             support,
             obstacle,
-        };
-        robot.warm_up();
-        robot
-    }
-
-    /// One step of the template far from everything, so that a copy's buffers have their sizes.
-    fn warm_up(&mut self) {
-        let mut template = std::mem::take(&mut self.template);
-        template.step(Vector::ZERO, &self.parameters);
-        self.template = template;
+            half_height: body.obstacle.height_m as f32 / 2.0,
+        }
     }
 }
 
-/// Lowest and highest equilibrium point of shoulder, elbow, thumb and finger \[rad\].
-fn ranges(body: &Body) -> [[f64; 2]; 4] {
-    let arm = |name: &str| {
-        let joint = &body.joints[name];
-        [joint.lower_deg, joint.upper_deg].map(f64::to_radians)
-    };
-    let hand = body.grip.flexion_deg.map(f64::to_radians);
-    [arm("shoulder"), arm("elbow"), hand, hand]
-}
-
-fn parameters(contact: &Contact, dt: f64) -> IntegrationParameters {
-    let softness =
-        SpringCoefficients::new(contact.frequency_hz as f32, contact.damping_ratio as f32);
+/// Numbers with which the engine holds a light ball: hard contacts that damp well, and tolerances
+/// for things as small as a finger.
+fn parameters(dt: f64) -> IntegrationParameters {
+    const FREQUENCY_HZ: f32 = 120.0;
+    const DAMPING_RATIO: f32 = 5.0;
+    let softness = SpringCoefficients::new(FREQUENCY_HZ, DAMPING_RATIO);
     IntegrationParameters {
         dt: dt as f32,
         contact_softness: softness,
         static_contact_softness: softness,
-        length_unit: contact.length_unit_m as f32,
-        num_solver_iterations: contact.substeps,
+        length_unit: 0.1,
+        // These are substeps; two cost twice as much.
+        num_solver_iterations: 1,
         max_ccd_substeps: 0,
         // Its distance is as large as a hand.
         contact_recycling: false,
@@ -91,22 +72,48 @@ fn parameters(contact: &Contact, dt: f64) -> IntegrationParameters {
     }
 }
 
-fn insert_link(world: &mut World, body: &Body, link: &Link) -> RigidBodyHandle {
+/// What a thing may touch: arm and hand pass through themselves and the support.
+#[derive(Clone, Copy)]
+enum Thing {
+    Robot,
+    Object,
+    Support,
+    Obstacle,
+}
+
+impl Thing {
+    fn groups(self) -> InteractionGroups {
+        const ROBOT: Group = Group::GROUP_1;
+        const OBJECT: Group = Group::GROUP_2;
+        const SUPPORT: Group = Group::GROUP_3;
+        const OBSTACLE: Group = Group::GROUP_4;
+        let (member, filter) = match self {
+            Self::Robot => (ROBOT, OBJECT | OBSTACLE),
+            Self::Object => (OBJECT, ROBOT | SUPPORT | OBSTACLE),
+            Self::Support => (SUPPORT, OBJECT),
+            Self::Obstacle => (OBSTACLE, ROBOT | OBJECT),
+        };
+        InteractionGroups::new(member, filter, InteractionTestMode::And)
+    }
+}
+
+/// A link whose solids are marked with their slots, from `slot` on.
+fn insert_link(state: &mut State, body: &Body, link: &Link, slot: &mut u128) -> RigidBodyHandle {
     // A spring wakes nothing, so nothing may sleep.
     let builder = RigidBodyBuilder::dynamic()
         .gravity_scale(0.0)
         .can_sleep(false);
-    let handle = world.bodies.insert(builder);
-    for (part, solid) in &link.solids {
-        let thing = Thing::Robot(*part);
+    let handle = state.bodies.insert(builder);
+    for (_, solid) in &link.solids {
         let collider = solid_collider(solid)
             .density(body.arm.density_kg_m3 as f32)
             .friction(body.object.friction as f32)
-            .collision_groups(thing.groups())
-            .user_data(thing.code());
-        world
+            .collision_groups(Thing::Robot.groups())
+            .user_data(*slot);
+        *slot += 1;
+        state
             .colliders
-            .insert_with_parent(collider, handle, &mut world.bodies);
+            .insert_with_parent(collider, handle, &mut state.bodies);
     }
     handle
 }
@@ -131,12 +138,12 @@ fn joint(link: &Link) -> GenericJoint {
         .build()
 }
 
-fn set_damping(world: &mut World, body: &Body, links: &[Link], joints: &[MultibodyJointHandle]) {
-    let World {
+fn set_damping(state: &mut State, body: &Body, links: &[Link], joints: &[MultibodyJointHandle]) {
+    let State {
         bodies,
         multibody_joints,
         ..
-    } = world;
+    } = state;
     let Some((multibody, _)) = multibody_joints.get_mut(joints[0]) else {
         return;
     };
@@ -154,9 +161,9 @@ fn set_damping(world: &mut World, body: &Body, links: &[Link], joints: &[Multibo
     multibody.update_rigid_bodies(bodies, true);
 }
 
-fn insert_object(world: &mut World, body: &Body) -> (RigidBodyHandle, ColliderHandle) {
+fn insert_object(state: &mut State, body: &Body) -> (RigidBodyHandle, ColliderHandle) {
     let far = Vector::new(0.0, -10.0, 0.0);
-    let handle = world.bodies.insert(
+    let handle = state.bodies.insert(
         RigidBodyBuilder::dynamic()
             .translation(far)
             .linear_damping(body.object.linear_damping as f32)
@@ -167,24 +174,24 @@ fn insert_object(world: &mut World, body: &Body) -> (RigidBodyHandle, ColliderHa
         .density(body.object.density_kg_m3 as f32)
         .friction(body.object.friction as f32)
         .collision_groups(Thing::Object.groups())
-        .user_data(Thing::Object.code());
-    let collider = world
+        .user_data(OBJECT as u128);
+    let collider = state
         .colliders
-        .insert_with_parent(collider, handle, &mut world.bodies);
+        .insert_with_parent(collider, handle, &mut state.bodies);
     (handle, collider)
 }
 
-fn insert_support(world: &mut World, body: &Body) -> ColliderHandle {
+fn insert_support(state: &mut State, body: &Body) -> ColliderHandle {
     let plane = ColliderBuilder::halfspace(Unit::new_unchecked(Vector::Z))
         .friction(body.object.support_friction as f32)
         .friction_combine_rule(CoefficientCombineRule::Min)
         .collision_groups(Thing::Support.groups())
-        .user_data(Thing::Support.code())
+        .user_data(SUPPORT as u128)
         .enabled(false);
-    world.colliders.insert(plane)
+    state.colliders.insert(plane)
 }
 
-fn insert_obstacle(world: &mut World, body: &Body) -> ColliderHandle {
+fn insert_obstacle(state: &mut State, body: &Body) -> ColliderHandle {
     let half = body.obstacle.height_m as f32 / 2.0;
     // The engine's cylinders stand along y.
     let upright = Vector::X * std::f32::consts::FRAC_PI_2;
@@ -192,7 +199,7 @@ fn insert_obstacle(world: &mut World, body: &Body) -> ColliderHandle {
         .rotation(upright)
         .friction(body.object.friction as f32)
         .collision_groups(Thing::Obstacle.groups())
-        .user_data(Thing::Obstacle.code())
+        .user_data(OBSTACLE as u128)
         .enabled(false);
-    world.colliders.insert(cylinder)
+    state.colliders.insert(cylinder)
 }

@@ -1,0 +1,128 @@
+//! LᵀDL factors of matrices with the tree's sparsity.
+//!
+//! Velocities are ordered from the root outwards: the ball, shoulder and elbow, then digit by digit.
+//! A row's entries are those of its ancestors, and elimination from the tips inwards adds none
+//! (Featherstone, *Rigid Body Dynamics Algorithms*, Sect. 6.5). The ball counts as everybody's
+//! ancestor, as contacts join it to any link.
+
+use std::ops::Range;
+
+use crate::robot::links::{FOREARM, Link};
+
+/// Velocities of the ball.
+pub(super) const BALL: usize = 6;
+/// The ball's, the shoulder's and the elbow's: ancestors of all digits.
+const TRUNK: usize = BALL + FOREARM + 1;
+/// Most velocities.
+pub(super) const SIZE: usize = BALL + crate::robot::kinematics::MAX_JOINTS;
+
+/// A symmetric matrix: the lower triangle, of which ancestors alone count.
+pub(super) type Matrix = [[f64; SIZE]; SIZE];
+
+/// Who is whose ancestor.
+#[derive(Debug, Clone)]
+pub(super) struct Sparsity {
+    size: usize,
+    /// Where the digit of each velocity begins.
+    digit: [usize; SIZE],
+}
+
+impl Sparsity {
+    pub(super) fn of(links: &[Link]) -> Self {
+        let mut digit: [usize; SIZE] = std::array::from_fn(|k| k);
+        for (i, link) in links.iter().enumerate().skip(FOREARM + 1) {
+            digit[BALL + i] = match link.parent {
+                Some(FOREARM) | None => BALL + i,
+                Some(parent) => digit[BALL + parent],
+            };
+        }
+        Self {
+            size: BALL + links.len(),
+            digit,
+        }
+    }
+
+    /// The ball's velocities.
+    pub(super) const fn ball(&self) -> Range<usize> {
+        0..BALL
+    }
+
+    /// The joints'.
+    pub(super) const fn joints(&self) -> Range<usize> {
+        BALL..self.size
+    }
+
+    /// All.
+    pub(super) const fn all(&self) -> Range<usize> {
+        0..self.size
+    }
+
+    /// Ancestors of velocity `k`, from `first` on: a range of the trunk and one of the own digit.
+    pub(super) fn ancestors(&self, k: usize, first: usize) -> [Range<usize>; 2] {
+        [first..k.min(TRUNK).max(first), self.digit[k].min(k)..k]
+    }
+
+    /// Factors some rows in place.
+    pub(super) fn factor(&self, matrix: &mut Matrix, rows: &Range<usize>) {
+        let first = rows.start;
+        for k in rows.clone().rev() {
+            let (above, rest) = matrix.split_at_mut(k);
+            let row = &mut rest[0];
+            let inverse = 1.0 / row[k];
+            row[k] = inverse;
+            let [trunk, digit] = self.ancestors(k, first);
+            for i in digit.clone().chain(trunk.clone()) {
+                let share = row[i] * inverse;
+                let into = &mut above[i];
+                let end = i + 1;
+                for j in trunk.start..trunk.end.min(end) {
+                    into[j] -= share * row[j];
+                }
+                for j in digit.start..digit.end.min(end) {
+                    into[j] -= share * row[j];
+                }
+            }
+            for i in trunk.chain(digit) {
+                row[i] *= inverse;
+            }
+        }
+    }
+
+    /// Solves for some velocities, with factors of their rows; `b` becomes the solution.
+    pub(super) fn solve(&self, factors: &Matrix, b: &mut [f64; SIZE], rows: &Range<usize>) {
+        let first = rows.start;
+        for k in rows.clone().rev() {
+            let value = b[k];
+            for i in self.ancestors(k, first).into_iter().flatten() {
+                b[i] -= factors[k][i] * value;
+            }
+        }
+        for k in rows.clone() {
+            let mut value = b[k] * factors[k][k];
+            for i in self.ancestors(k, first).into_iter().flatten() {
+                value -= factors[k][i] * b[i];
+            }
+            b[k] = value;
+        }
+    }
+
+    /// The product of some rows with a vector.
+    pub(super) fn product(
+        &self,
+        matrix: &Matrix,
+        x: &[f64; SIZE],
+        rows: &Range<usize>,
+    ) -> [f64; SIZE] {
+        let first = rows.start;
+        let mut product = [0.0; SIZE];
+        for k in rows.clone() {
+            let mut sum = matrix[k][k] * x[k];
+            for i in self.ancestors(k, first).into_iter().flatten() {
+                sum += matrix[k][i] * x[i];
+                product[i] += matrix[k][i] * x[k];
+            }
+            product[k] += sum;
+        }
+        product
+    }
+}

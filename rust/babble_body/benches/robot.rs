@@ -75,7 +75,11 @@ fn steps(c: &mut Criterion) {
                         |world| {
                             for _ in 0..STEPS {
                                 k += 1;
-                                let there = if k % 200 < 100 { [0.3, 1.2] } else { [-0.3, 0.6] };
+                                let there = if k % 200 < 100 {
+                                    [0.3, 1.2]
+                                } else {
+                                    [-0.3, 0.6]
+                                };
                                 robot.step(world, black_box(&reflex(&robot, there)));
                             }
                         },

@@ -23,10 +23,10 @@ use kinematics::{MAX_JOINTS, place};
 pub use links::Part;
 use links::{FOREARM, Link};
 pub use muscles::{Drive, Posture, Pull, towards};
-pub use touch::Touch;
 use touch::SLOTS;
-pub use world::World;
+pub use touch::Touch;
 use world::MovingBall;
+pub use world::World;
 
 /// Earth's, downwards \[m/s²\]. It acts on the object alone: muscles compensate for it (Sect. II-B).
 const GRAVITY: f64 = 9.81;

@@ -216,7 +216,9 @@ fn normal_impulse(pair: &ContactPair) -> f64 {
 
 fn depth(pair: &ContactPair) -> f64 {
     let points = pair.manifolds().iter().flat_map(|m| &m.points);
-    points.map(|point| f64::from(-point.dist)).fold(0.0, f64::max)
+    points
+        .map(|point| f64::from(-point.dist))
+        .fold(0.0, f64::max)
 }
 
 fn other(pair: &ContactPair, one: ColliderHandle) -> ColliderHandle {

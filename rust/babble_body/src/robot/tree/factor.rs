@@ -62,24 +62,24 @@ impl Sparsity {
         [first..k.min(TRUNK).max(first), self.digit[k].min(k)..k]
     }
 
-    /// Factors some rows in place.
+    /// Factors some rows in place. The upper triangle is scratch: loops over the whole trunk are
+    /// quicker than loops that end at the diagonal.
     pub(super) fn factor(&self, matrix: &mut Matrix, rows: &Range<usize>) {
-        let first = rows.start;
         for k in rows.clone().rev() {
             let (above, rest) = matrix.split_at_mut(k);
             let row = &mut rest[0];
             let inverse = 1.0 / row[k];
             row[k] = inverse;
-            let [trunk, digit] = self.ancestors(k, first);
-            for i in digit.clone().chain(trunk.clone()) {
+            let [trunk, digit] = self.ancestors(k, rows.start);
+            for i in trunk.clone() {
                 let share = row[i] * inverse;
-                let into = &mut above[i];
-                let end = i + 1;
-                for j in trunk.start..trunk.end.min(end) {
-                    into[j] -= share * row[j];
-                }
-                for j in digit.start..digit.end.min(end) {
-                    into[j] -= share * row[j];
+                subtract_trunk(&mut above[i], row, share);
+            }
+            for i in digit.clone() {
+                let share = row[i] * inverse;
+                subtract_trunk(&mut above[i], row, share);
+                for j in digit.start..=i {
+                    above[i][j] -= share * row[j];
                 }
             }
             for i in trunk.chain(digit) {
@@ -90,17 +90,19 @@ impl Sparsity {
 
     /// Solves for some velocities, with factors of their rows; `b` becomes the solution.
     pub(super) fn solve(&self, factors: &Matrix, b: &mut [f64; SIZE], rows: &Range<usize>) {
-        let first = rows.start;
         for k in rows.clone().rev() {
-            let value = b[k];
-            for i in self.ancestors(k, first).into_iter().flatten() {
-                b[i] -= factors[k][i] * value;
+            let (row, value) = (&factors[k], b[k]);
+            let [trunk, digit] = self.ancestors(k, rows.start);
+            for i in trunk.chain(digit) {
+                b[i] -= row[i] * value;
             }
         }
         for k in rows.clone() {
-            let mut value = b[k] * factors[k][k];
-            for i in self.ancestors(k, first).into_iter().flatten() {
-                value -= factors[k][i] * b[i];
+            let row = &factors[k];
+            let [trunk, digit] = self.ancestors(k, rows.start);
+            let mut value = b[k] * row[k];
+            for i in trunk.chain(digit) {
+                value -= row[i] * b[i];
             }
             b[k] = value;
         }
@@ -113,16 +115,23 @@ impl Sparsity {
         x: &[f64; SIZE],
         rows: &Range<usize>,
     ) -> [f64; SIZE] {
-        let first = rows.start;
         let mut product = [0.0; SIZE];
         for k in rows.clone() {
-            let mut sum = matrix[k][k] * x[k];
-            for i in self.ancestors(k, first).into_iter().flatten() {
-                sum += matrix[k][i] * x[i];
-                product[i] += matrix[k][i] * x[k];
+            let row = &matrix[k];
+            let mut sum = row[k] * x[k];
+            let [trunk, digit] = self.ancestors(k, rows.start);
+            for i in trunk.chain(digit) {
+                sum += row[i] * x[i];
+                product[i] += row[i] * x[k];
             }
             product[k] += sum;
         }
         product
+    }
+}
+
+fn subtract_trunk(from: &mut [f64; SIZE], row: &[f64; SIZE], share: f64) {
+    for j in 0..TRUNK {
+        from[j] -= share * row[j];
     }
 }

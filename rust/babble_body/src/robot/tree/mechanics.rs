@@ -91,6 +91,11 @@ impl Speeds {
         speeds
     }
 
+    /// Angular speed of a link \[rad/s\].
+    pub(super) const fn turn(&self, link: usize) -> f64 {
+        self.turn[link]
+    }
+
     /// Velocity of the point of a link that is at `point` \[m/s\].
     pub(super) fn at(
         &self,

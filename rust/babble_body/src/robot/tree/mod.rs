@@ -21,11 +21,11 @@ use nalgebra::Vector3;
 use self::factor::{BALL, Matrix, SIZE, Sparsity};
 use self::mechanics::{Inertia, Speeds};
 use super::GRAVITY;
-use crate::arm::rotate;
 use super::kinematics::{MAX_JOINTS, Placed, place};
 use super::links::{Link, Solid};
 use super::muscles::Spring;
 use super::world::{MovingBall, World};
+use crate::arm::rotate;
 use crate::config::{self, Body};
 
 /// Velocities: of the ball (3), its spin (3), the joints.
@@ -93,7 +93,7 @@ impl Tree {
         let speeds = Speeds::of(&self.links, &placed, &free[BALL..]);
         let contacts = self.contacts(world, &placed, &speeds, &free);
         let terms = self.terms(world, contacts);
-        let velocities = self.with_contacts(world, &equations, free, &terms);
+        let velocities = self.with_contacts(world, &placed, &equations, free, &terms);
         self.note_contacts(world, &velocities, &terms);
         self.move_on(world, &velocities);
     }

@@ -17,12 +17,17 @@ use std::ops::Range;
 use nalgebra::{Matrix3, Vector3};
 
 use super::contact::Contact;
-use super::factor::BALL;
+use super::factor::{BALL, Matrix, SIZE};
+use super::mechanics::Speeds;
 use super::{Equations, Tree, Velocities};
 use crate::config;
+use crate::robot::kinematics::{MAX_JOINTS, Placed, place};
+use crate::robot::links::FOREARM;
 use crate::robot::touch::{SLOTS, SOLIDS};
 use crate::robot::world::World;
 
+/// Velocities of shoulder and elbow.
+const ARM: Range<usize> = BALL..BALL + FOREARM + 1;
 /// Newton steps at most; a handful is usual.
 const MAX_STEPS: usize = 50;
 /// The last step's gain, as a share of the energy of a ball at 1 m/s.
@@ -106,6 +111,7 @@ impl Tree {
     pub(super) fn with_contacts(
         &self,
         world: &World,
+        placed: &[Placed; MAX_JOINTS],
         equations: &Equations,
         free: Velocities,
         terms: &[Term],
@@ -120,70 +126,55 @@ impl Tree {
             self.sparsity.ball()
         };
         let mut velocities = free;
-        self.begin(world, &rows, &mut velocities);
-        let enough = TOLERANCE * self.mass(&world.ball);
-        for _ in 0..MAX_STEPS {
-            let step = self.newton_step(equations, &rows, &velocities, terms);
-            let share = if step.gain <= enough {
-                1.0
-            } else {
-                step.search()
-            };
-            for k in rows.clone() {
-                velocities[k] += share * step.direction[k];
-            }
-            if step.gain <= enough {
-                break;
-            }
-        }
-        velocities
+        self.begin(world, placed, &rows, &mut velocities);
+        let mut problem = Problem {
+            tree: self,
+            equations,
+            terms,
+            rows,
+            velocities,
+            slopes: [0.0; SIZE],
+            factors: equations.matrix,
+        };
+        problem.solve(TOLERANCE * self.mass(&world.ball));
+        problem.velocities
     }
 
-    /// The last step's velocities, which a steady grasp keeps.
-    fn begin(&self, world: &World, rows: &Range<usize>, velocities: &mut Velocities) {
-        let ball = &world.ball;
-        velocities[..3].copy_from_slice(ball.velocity.as_slice());
-        velocities[3..BALL].copy_from_slice(ball.spin.as_slice());
-        if rows.end > BALL {
-            velocities[BALL..rows.end].copy_from_slice(&world.v[..rows.end - BALL]);
-        }
-    }
-
-    fn newton_step<'a>(
+    /// Where to begin. A ball that the hand touches moves with the forearm as before, and that as if
+    /// nothing touched it: then surfaces that stick nearly do so at once.
+    fn begin(
         &self,
-        equations: &Equations,
+        world: &World,
+        placed: &[Placed; MAX_JOINTS],
         rows: &Range<usize>,
-        velocities: &Velocities,
-        terms: &'a [Term],
-    ) -> NewtonStep<'a> {
-        let mut slopes = self.sparsity.product(&equations.matrix, velocities, rows);
-        for k in rows.clone() {
-            slopes[k] -= equations.rhs[k];
+        velocities: &mut Velocities,
+    ) {
+        let ball = &world.ball;
+        let (mut velocity, mut spin) = (ball.velocity, ball.spin);
+        if rows.end > BALL {
+            velocities[ARM.end..rows.end].copy_from_slice(&world.v[FOREARM + 1..rows.end - BALL]);
         }
-        let residual = slopes;
-        let mut matrix = equations.matrix;
-        let mut points = Vec::with_capacity(terms.len());
-        for term in terms {
-            let relative = term.contact.relative(velocities);
-            term.contact.apply(&-term.impulse(&relative), &mut slopes);
-            term.contact.add(&term.curvature(&relative), &mut matrix);
-            points.push((term, relative));
+        if world.impulses[..SOLIDS]
+            .iter()
+            .any(|&impulse| impulse > 0.0)
+        {
+            let arm = &self.links[..=FOREARM];
+            let before = place(arm, |i| world.q[i] - self.dt * world.v[i]);
+            let old = Speeds::of(arm, &before, &world.v);
+            let new = Speeds::of(arm, placed, &velocities[ARM]);
+            let there = (ball.centre - ball.velocity * self.dt).xy();
+            let (was, is) = (
+                old.at(FOREARM, &before, there),
+                new.at(FOREARM, placed, ball.centre.xy()),
+            );
+            let back = before[FOREARM].frame().rotation.transpose();
+            let turn = placed[FOREARM].frame().rotation * back;
+            velocity = turn * (velocity - was.push(0.0)) + is.push(0.0);
+            let turns = [&old, &new].map(|speeds| Vector3::z() * speeds.turn(FOREARM));
+            spin = turn * (spin - turns[0]) + turns[1];
         }
-        self.sparsity.factor(&mut matrix, rows);
-        let mut direction = slopes.map(|slope| -slope);
-        self.sparsity.solve(&matrix, &mut direction, rows);
-        let changed = self.sparsity.product(&equations.matrix, &direction, rows);
-        let dot = |a: &Velocities| -> f64 { rows.clone().map(|k| a[k] * direction[k]).sum() };
-        NewtonStep {
-            gain: -dot(&slopes),
-            linear: dot(&residual),
-            quadratic: dot(&changed),
-            points: points
-                .into_iter()
-                .map(|(term, relative)| (term, relative, term.contact.relative(&direction)))
-                .collect(),
-            direction,
-        }
+        velocities[..3].copy_from_slice(velocity.as_slice());
+        velocities[3..BALL].copy_from_slice(spin.as_slice());
     }
 
     /// Writes down what touched.
@@ -206,41 +197,99 @@ impl Tree {
     }
 }
 
-/// A direction to go, and the function along it.
-struct NewtonStep<'a> {
-    direction: Velocities,
-    /// How fast the function falls at first.
-    gain: f64,
-    linear: f64,
-    quadratic: f64,
-    /// Contacts, their relative velocities, and how those change.
-    points: Vec<(&'a Term, Vector3<f64>, Vector3<f64>)>,
+/// The function, and where the search for its least is.
+struct Problem<'a> {
+    tree: &'a Tree,
+    equations: &'a Equations,
+    terms: &'a [Term],
+    rows: Range<usize>,
+    velocities: Velocities,
+    /// Slopes of the function there.
+    slopes: Velocities,
+    /// Of the function's curvature, there or one step before.
+    factors: Matrix,
 }
 
-impl NewtonStep<'_> {
-    /// Slope of the function after a share of the step.
-    fn slope(&self, share: f64) -> f64 {
-        let smooth = self.linear + share * self.quadratic;
-        let pushed = |(term, relative, change): &(&Term, Vector3<f64>, Vector3<f64>)| {
-            term.impulse(&(relative + change * share)).dot(change)
-        };
-        smooth - self.points.iter().map(pushed).sum::<f64>()
+impl Problem<'_> {
+    /// Newton's method until a step would gain no more than `enough` \[J\].
+    fn solve(&mut self, enough: f64) {
+        self.slope();
+        for _ in 0..MAX_STEPS {
+            self.factor();
+            let (direction, gain) = self.direction();
+            let share = self.search(&direction, gain);
+            self.go(&direction, share);
+            if gain <= enough {
+                return;
+            }
+            // Near the least, curvature hardly changes: a step with the factors at hand is enough.
+            self.slope();
+            let (direction, gain) = self.direction();
+            if gain <= enough {
+                self.go(&direction, 1.0);
+                return;
+            }
+        }
     }
 
-    /// The share of the step after which the function rises no more, roughly.
-    fn search(&self) -> f64 {
+    fn slope(&mut self) {
+        let Equations { matrix, rhs } = self.equations;
+        let sparsity = &self.tree.sparsity;
+        self.slopes = sparsity.product(matrix, &self.velocities, &self.rows);
+        for k in self.rows.clone() {
+            self.slopes[k] -= rhs[k];
+        }
+        for term in self.terms {
+            let relative = term.contact.relative(&self.velocities);
+            let impulse = term.impulse(&relative);
+            term.contact.apply(&-impulse, &mut self.slopes);
+        }
+    }
+
+    fn factor(&mut self) {
+        self.factors = self.equations.matrix;
+        for term in self.terms {
+            let relative = term.contact.relative(&self.velocities);
+            let curvature = term.curvature(&relative);
+            term.contact.add(&curvature, &mut self.factors);
+        }
+        self.tree.sparsity.factor(&mut self.factors, &self.rows);
+    }
+
+    /// Newton's step, and how fast the function falls along it at first \[J\].
+    fn direction(&self) -> (Velocities, f64) {
+        let mut direction = self.slopes.map(|slope| -slope);
+        let sparsity = &self.tree.sparsity;
+        sparsity.solve(&self.factors, &mut direction, &self.rows);
+        let gain = -self.dot(&self.slopes, &direction);
+        (direction, gain)
+    }
+
+    fn dot(&self, a: &Velocities, b: &Velocities) -> f64 {
+        self.rows.clone().map(|k| a[k] * b[k]).sum()
+    }
+
+    fn go(&mut self, direction: &Velocities, share: f64) {
+        for k in self.rows.clone() {
+            self.velocities[k] += share * direction[k];
+        }
+    }
+
+    /// The share of a step after which the function rises no more, roughly.
+    fn search(&self, direction: &Velocities, gain: f64) -> f64 {
         const ROUGHLY: f64 = 0.1;
         const TRIES: usize = 30;
-        let [mut low, mut high] = [(0.0, -self.gain), (1.0, self.slope(1.0))];
-        if high.1 <= ROUGHLY * self.gain {
+        let line = self.line(direction, gain);
+        let [mut low, mut high] = [(0.0, -gain), (1.0, line.slope(1.0))];
+        if high.1 <= ROUGHLY * gain {
             return 1.0;
         }
         let mut share = 1.0;
         for _ in 0..TRIES {
             // Regula falsi, Illinois' way: an end that stays counts half.
             share = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
-            let slope = self.slope(share);
-            if slope.abs() <= ROUGHLY * self.gain {
+            let slope = line.slope(share);
+            if slope.abs() <= ROUGHLY * gain {
                 break;
             }
             if slope > 0.0 {
@@ -252,5 +301,56 @@ impl NewtonStep<'_> {
             }
         }
         share
+    }
+
+    fn line(&self, direction: &Velocities, gain: f64) -> Line<'_> {
+        let changed = {
+            let sparsity = &self.tree.sparsity;
+            sparsity.product(&self.equations.matrix, direction, &self.rows)
+        };
+        let points: Vec<_> = self
+            .terms
+            .iter()
+            .map(|term| Point {
+                term,
+                relative: term.contact.relative(&self.velocities),
+                change: term.contact.relative(direction),
+            })
+            .collect();
+        let pushed: f64 = points.iter().map(|point| point.pushed(0.0)).sum();
+        Line {
+            linear: pushed - gain,
+            quadratic: self.dot(&changed, direction),
+            points,
+        }
+    }
+}
+
+/// A contact along a line.
+struct Point<'a> {
+    term: &'a Term,
+    relative: Vector3<f64>,
+    change: Vector3<f64>,
+}
+
+impl Point<'_> {
+    fn pushed(&self, share: f64) -> f64 {
+        let relative = self.relative + self.change * share;
+        self.term.impulse(&relative).dot(&self.change)
+    }
+}
+
+/// The function along a line.
+struct Line<'a> {
+    linear: f64,
+    quadratic: f64,
+    points: Vec<Point<'a>>,
+}
+
+impl Line<'_> {
+    /// Its slope after a share of the step \[J\].
+    fn slope(&self, share: f64) -> f64 {
+        let pushed: f64 = self.points.iter().map(|point| point.pushed(share)).sum();
+        self.linear + share * self.quadratic - pushed
     }
 }

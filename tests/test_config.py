@@ -52,7 +52,7 @@ def test_every_field_of_the_document_is_a_field_of_the_dataclasses():
     compare(Config(), PAPER, "config")
     # The numbers of grasping are among them.
     walked = dict(leaves(PAPER))
-    for path in ("body.grip.arm_muscles.kp", "body.object.friction", "body.contact.substeps"):
+    for path in ("body.grip.arm_muscles.kp", "body.object.friction", "body.contact.stiffness_n_m"):
         assert path in walked
     assert "grasp.palm_side.polar_deg[0]" in walked
 
@@ -282,8 +282,10 @@ OUT_OF_BOUNDS = [
     ({"body": {"grip": {"hand_muscles": {"kp": 0}}}}, "grip.hand_muscles.kp"),
     ({"body": {"object": {"friction": -1}}}, "object.friction"),
     ({"body": {"object": {"density_kg_m3": 0}}}, "object.density_kg_m3"),
-    ({"body": {"contact": {"substeps": 0}}}, "contact.substeps"),
-    ({"body": {"contact": {"frequency_hz": -1}}}, "contact.frequency_hz"),
+    ({"body": {"contact": {"stiffness_n_m": 0}}}, "contact.stiffness_n_m"),
+    ({"body": {"contact": {"relaxation_s": -1}}}, "contact.relaxation_s"),
+    ({"body": {"contact": {"stiction_m_s": 0}}}, "contact.stiction_m_s"),
+    ({"body": {"engine": "bullet"}}, "engine"),
     ({"body": "big"}, "body"),
     ({"profile": "giant"}, "giant"),
     ({"profile": 3}, "profile"),

@@ -605,7 +605,11 @@ CHANGES = {
     "a grasp counts sooner": ("[grasp]\nhold_steps = 5\n", "success", -25),
     "a stronger arm is there sooner": ("[body.grip.arm_muscles]\nkp = 2000.0\n", "success", -10),
     "a hand without strength": ("[body.grip.hand_muscles]\nkp = 1e-3\nkd = 1e-3\n", "lost", 0),
-    "an object without friction": ("[body.object]\nfriction = 0.0\n", "lost", 0),
+    "a smooth, heavy object": (
+        "[body.object]\nfriction = 0.0\ndensity_kg_m3 = 4000.0\n",
+        "lost",
+        0,
+    ),
 }
 
 

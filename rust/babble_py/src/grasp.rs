@@ -192,7 +192,7 @@ impl PyTask for babble_env::GraspTask {
         py: Python<'py>,
         state: &GraspState,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let palms: Vec<[f64; 2]> = state.trail.iter().map(|m| m.palm.map(f64::from)).collect();
+        let palms: Vec<[f64; 2]> = state.trail.iter().map(|m| m.palm).collect();
         convert::array2(py, &palms)
     }
 }

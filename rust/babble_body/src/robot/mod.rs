@@ -67,7 +67,7 @@ pub struct Robot {
 
 #[derive(Debug, Clone)]
 enum Stepper {
-    Tree(tree::Tree),
+    Tree(Box<tree::Tree>),
     Rapier(Box<rapier::Rapier>),
 }
 
@@ -83,7 +83,7 @@ impl Robot {
                 .flat_map(|link| link.solids.iter().map(|&(part, _)| part))
                 .collect(),
             stepper: match body.engine {
-                Engine::Tree => Stepper::Tree(tree::Tree::new(body, &links, dt)),
+                Engine::Tree => Stepper::Tree(Box::new(tree::Tree::new(body, &links, dt))),
                 Engine::Rapier => Stepper::Rapier(Box::new(rapier::Rapier::new(body, &links, dt))),
             },
             body: body.clone(),
@@ -158,7 +158,7 @@ impl Robot {
     /// A world with every joint at its angle, in the order of [`Self::joint_angles`] \[rad\], and the
     /// object at a point \[m\]: to be looked at.
     #[must_use]
-    pub fn posed(&self, joints: &[f32], object: &Vector3<f64>) -> World {
+    pub fn posed(&self, joints: &[f64], object: &Vector3<f64>) -> World {
         let mut world = self.world(&Setup {
             posture: [0.0; 4],
             ball: Ball {
@@ -168,8 +168,8 @@ impl Robot {
             support: false,
             obstacle: None,
         });
-        for (q, &angle) in world.q.iter_mut().zip(joints) {
-            *q = angle.into();
+        for (q, angle) in world.q.iter_mut().zip(joints) {
+            *q = *angle;
         }
         world.ball.centre = *object;
         world

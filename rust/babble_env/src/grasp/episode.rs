@@ -26,11 +26,11 @@ const DROPPED_M: f64 = 0.1;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Moment {
     /// Angles of all joints \[rad\].
-    pub joints: Vec<f32>,
+    pub joints: Vec<f64>,
     /// Centre of the object \[m\].
-    pub object: [f32; 3],
+    pub object: [f64; 3],
     /// Centre of the palm \[m\].
-    pub palm: [f32; 2],
+    pub palm: [f64; 2],
     /// Where the eye looks \[rad\].
     pub gaze: Gaze,
 }
@@ -466,14 +466,9 @@ impl GraspState {
         let palm = task.robot.palm(&self.world).origin;
         let object = task.robot.object(&self.world);
         self.trail.push(Moment {
-            joints: task
-                .robot
-                .joint_angles(&self.world)
-                .iter()
-                .map(|&q| q as f32)
-                .collect(),
-            object: [object.x, object.y, object.z].map(|x| x as f32),
-            palm: [palm.x as f32, palm.y as f32],
+            joints: task.robot.joint_angles(&self.world).to_vec(),
+            object: object.into(),
+            palm: [palm.x, palm.y],
             gaze: self.gaze,
         });
     }

@@ -41,7 +41,7 @@ pub(super) fn picture(
         things.pop();
         let palms: Vec<Vector2<f64>> = trail
             .iter()
-            .map(|moment| Vector2::from(moment.palm.map(f64::from)))
+            .map(|moment| Vector2::from(moment.palm))
             .collect();
         pose::push_trail(&mut things, &palms);
         push_goal(&mut things, state);
@@ -57,8 +57,8 @@ pub(super) fn picture(
 }
 
 fn world_at(task: &GraspTask, moment: &Moment) -> World {
-    let object = Vector3::from(moment.object.map(f64::from));
-    task.robot.posed(&moment.joints, &object)
+    task.robot
+        .posed(&moment.joints, &Vector3::from(moment.object))
 }
 
 /// Where the object is to be carried, on the ground.

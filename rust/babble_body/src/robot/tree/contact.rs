@@ -69,7 +69,7 @@ impl Contact {
         }
     }
 
-    /// Adds JᵀWJ for a curvature W \[kg\] of the impulse.
+    /// Adds `JᵀWJ` for a curvature W \[kg\] of the impulse.
     pub(super) fn add(&self, w: &Matrix3<f64>, to: &mut Matrix) {
         // ω × r = X ω
         let x = self.arm.map(|arm| -arm.cross_matrix());

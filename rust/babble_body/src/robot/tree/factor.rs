@@ -1,4 +1,4 @@
-//! LᵀDL factors of matrices with the tree's sparsity.
+//! `LᵀDL` factors of matrices with the tree's sparsity.
 //!
 //! Velocities are ordered from the root outwards: the ball, shoulder and elbow, then digit by digit.
 //! A row's entries are those of its ancestors, and elimination from the tips inwards adds none
@@ -40,11 +40,6 @@ impl Sparsity {
             size: BALL + links.len(),
             digit,
         }
-    }
-
-    /// The ball's velocities.
-    pub(super) const fn ball(&self) -> Range<usize> {
-        0..BALL
     }
 
     /// The joints'.

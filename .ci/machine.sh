@@ -16,6 +16,17 @@ find_python() {
     return 1
 }
 
+# Prints an interpreter of that version with a lock: on the PATH, or one of pyenv's.
+python_of() {
+    local candidate check
+    check="import sys, sysconfig
+sys.exit(sys.version_info[:2] != (3, ${1#3.}) or bool(sysconfig.get_config_var('Py_GIL_DISABLED')))"
+    for candidate in "python$1" "${PYENV_ROOT:-$HOME/.pyenv}/versions/$1".*/bin/python; do
+        "$candidate" -c "$check" 2>/dev/null && echo "$candidate" && return
+    done
+    return 1
+}
+
 # Debian packages: a help where we may install them, no reason to stop where we may not.
 debian_install() {
     if [[ $(id -u) -eq 0 ]] && command -v apt-get >/dev/null; then

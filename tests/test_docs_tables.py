@@ -282,8 +282,12 @@ def test_the_stub_has_the_extensions_names(repository):
                 assert set(arguments) <= {*signature, "self"}, (name, method)
 
 
-@pytest.mark.slow
-def test_the_stub_is_the_extension():
-    command = [sys.executable, "-m", "mypy.stubtest", "gym_babble._core"]
-    run = subprocess.run(command, check=False, capture_output=True, text=True)
+def test_the_stub_is_the_extension(tmp_path):
+    # What the stub imports is left unread: it is the names, parameters and kinds that are compared.
+    config = tmp_path / "mypy.ini"
+    config.write_text("[mypy]\nfollow_imports = skip\n")
+    command = [sys.executable, "-m", "mypy.stubtest", "--mypy-config-file", config]
+    run = subprocess.run(
+        [*command, "gym_babble._core"], check=False, capture_output=True, text=True
+    )
     assert run.returncode == 0, run.stdout

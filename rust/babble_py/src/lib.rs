@@ -16,7 +16,9 @@ mod reach;
 use pyo3::prelude::*;
 
 /// The Rust core of `gym_babble`.
-#[pymodule]
+// A free-threaded Python may leave its lock off: there is no unsafe code here, so the compiler has
+// checked that what Python shares is Sync, and an object that one thread is changing refuses another.
+#[pymodule(gil_used = false)]
 mod _core {
     #[pymodule_export]
     use crate::batch::Batch;

@@ -20,7 +20,7 @@ pub enum GazeFrame {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EyeConfig {
-    /// Centre of the eye from the shoulder \[m\]; 10 cm ahead and 25 cm above.
+    /// Centre of the eye from the shoulder \[m\], each within ±10; 10 cm ahead and 25 cm above.
     pub position_m: [f64; 3],
     /// Edge of the square image \[pixel\], 8 to 4096; the paper has 630.
     pub pixels: usize,
@@ -73,7 +73,8 @@ impl EyeConfig {
     /// [`EyeError::OutOfBound`] for the first field outside of its bound.
     pub fn validate(&self) -> Result<(), EyeError> {
         for value in self.position_m {
-            within("position_m", value, value.is_finite(), "finite [m]")?;
+            let fits = (-10.0..=10.0).contains(&value);
+            within("position_m", value, fits, "from -10 to 10 [m]")?;
         }
         let pixels = self.pixels as f64;
         let fits = (8..=4096).contains(&self.pixels);

@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from planar import Ours, turned
 
@@ -283,6 +283,7 @@ def test_only_what_touches_here_touches_there():
     assert touching == {frozenset(pair) for pair in [*pairs, ("object", "support")]}
 
 
+@settings(max_examples=20)
 @given(timestep=st.floats(1e-4, 0.05))
 def test_armature_and_contacts_go_with_the_step(timestep):
     model = mujoco.MjModel.from_xml_string(export_mjcf("reach", timestep=timestep))

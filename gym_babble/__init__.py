@@ -23,6 +23,7 @@ from gym_babble.agents import (
 )
 from gym_babble.config import Config
 from gym_babble.evaluation import Evaluation, evaluate
+from gym_babble.export import export_mjcf, export_urdf
 from gym_babble.registration import register_all
 from gym_babble.scenarios import Scenario, scenarios
 
@@ -39,6 +40,8 @@ __all__ = [
     "Scripted",
     "__version__",
     "evaluate",
+    "export_mjcf",
+    "export_urdf",
     "scenarios",
 ]
 

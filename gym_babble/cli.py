@@ -25,6 +25,7 @@ from gym_babble.compare import compare as run_comparison
 from gym_babble.doctor import examine
 from gym_babble.errors import BabbleError, ConfigError, MissingExtraError
 from gym_babble.evaluation import evaluate as run_evaluation
+from gym_babble.export import export_mjcf, export_urdf
 from gym_babble.film import record, save_film
 from gym_babble.loading import load_agent
 from gym_babble.registration import ENVIRONMENTS
@@ -307,6 +308,36 @@ def render(
     film = record(loaded, seed=seed, camera=camera, size=size)
     _say(f"{film.outcome} after {len(film.frames) - 1} control steps")
     _name_files(save_film(film, folder, kind))
+
+
+@app.command()
+def export(
+    *,
+    kind: Annotated[
+        Literal["mjcf", "urdf"],
+        typer.Option("--format", help="mjcf: for MuJoCo, with a case's things; urdf: robot alone."),
+    ] = "mjcf",
+    task: TaskName = "grasp",
+    body: BodyName = "paper",
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the case (mjcf).")] = 0,
+    timestep: Annotated[
+        float | None,
+        typer.Option(help="MuJoCo's step [s]; the environment's if not given (mjcf)."),
+    ] = None,
+    file: Annotated[Path | None, typer.Option("--out", help="File; stdout if not given.")] = None,
+) -> None:
+    """Write the robot for other simulators."""
+    if file is not None:
+        _check_folder_of(file)
+    if kind == "mjcf":
+        text = export_mjcf(task, body=body, seed=seed, timestep=timestep)
+    else:
+        text = export_urdf(task, body=body)
+    if file is None:
+        typer.echo(text, nl=False)
+        return
+    file.write_text(text, encoding="utf-8")
+    _name_files([file])
 
 
 @app.command()

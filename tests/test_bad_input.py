@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import re
+
 import gymnasium
 import numpy as np
 import pytest
 from comparing import BATCHES, EACH_CONTROL, TASKS, assert_same
 from gymnasium.error import ResetNeeded
 
-from gym_babble import scenarios
+from gym_babble import export_mjcf, export_urdf, scenarios
 from gym_babble.envs import BabbleGraspEnv, BabbleReachEnv, BabbleReachVectorEnv
 from gym_babble.errors import (
     ActionError,
@@ -452,6 +454,26 @@ def test_goals_of_a_wrong_shape_are_refused(task):
     ):
         with pytest.raises(ConfigError, match="goal"):
             env.compute_reward(achieved, desired, {})
+
+
+@pytest.mark.parametrize(
+    ("export", "arguments", "error", "named"),
+    [
+        (export_mjcf, {"task": "walk"}, ConfigError, "task = 'walk' is not one of reach, grasp"),
+        (export_urdf, {"task": "walk"}, ConfigError, "task = 'walk' is not one of reach, grasp"),
+        (export_urdf, {"body": "nobody"}, ConfigError, "nobody"),
+        (export_mjcf, {"body": {"arm": 1}}, ConfigError, "arm"),
+        (export_mjcf, {"timestep": 0}, ConfigError, "timestep = 0 is not a number above 0"),
+        (export_mjcf, {"timestep": 0.051}, ConfigError, "at most 0.05 s"),
+        (export_mjcf, {"timestep": NAN}, ConfigError, "timestep = nan"),
+        (export_mjcf, {"timestep": "5 ms"}, ConfigError, "timestep = '5 ms'"),
+        (export_mjcf, {"options": {"size": 1}}, ConfigError, "size"),
+        (export_mjcf, {"options": {"object": (9, 9)}}, ScenarioError, "object"),
+    ],
+)
+def test_what_cannot_be_exported_is_named(export, arguments, error, named):
+    with pytest.raises(error, match=re.escape(named)):
+        export(**arguments)
 
 
 @each_task

@@ -10,7 +10,15 @@ import numpy as np
 import pytest
 from stable_baselines3 import PPO
 
-from gym_babble import HebbBabbling, HebbGrasping, contenders, evaluate, scenarios
+from gym_babble import (
+    HebbBabbling,
+    HebbGrasping,
+    contenders,
+    evaluate,
+    export_mjcf,
+    export_urdf,
+    scenarios,
+)
 from gym_babble.cli import main
 from gym_babble.ppo import train_ppo
 from gym_babble.registration import ENVIRONMENTS
@@ -108,6 +116,27 @@ def test_info_tells_the_spec(run, run_json, row):
     assert code == 0
     assert all(entry["name"] in printed for entry in described["senses"])
     assert len(printed.splitlines()) < 80  # A map of neurons is one row.
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        ([], export_mjcf("grasp")),
+        (["--format", "urdf"], export_urdf("grasp")),
+        (
+            ["--task", "reach", "--body", "icub", "--seed", 3],
+            export_mjcf("reach", body="icub", seed=3),
+        ),
+        (["--timestep", 0.002], export_mjcf("grasp", timestep=0.002)),
+    ],
+)
+def test_export(run, tmp_path, words, text):
+    assert run("export", *words) == (0, text, "")
+    path = tmp_path / "robot.xml"
+    code, printed, said = run("export", *words, "--out", path)
+    assert (code, printed) == (0, "")
+    assert str(path) in said.replace("\n", "")
+    assert path.read_text(encoding="utf-8") == text
 
 
 def test_babble_saves_an_agent_that_evaluate_tests(run_json, tmp_path):
@@ -362,6 +391,10 @@ def test_doctor(run, run_json):
         (["reproduce", "fig5", "--out", "picture.xyz"], "picture.xyz"),
         (["reproduce", "table1", "--control", "torque"], "--control"),
         (["render", "random", "--out", "film", "--format", "avi"], "--format"),
+        (["export", "--format", "sdf"], "--format"),
+        (["export", "--timestep", "0"], "timestep = 0.0"),
+        (["export", "--body", "thin.toml"], "thin.toml"),
+        (["export", "--out", "no/robot.xml"], "no/robot.xml"),
         (["dance"], "dance"),
     ],
 )

@@ -206,7 +206,7 @@ fn inertia(body: &Body) -> Inertia {
 
 /// Area of a bone's cross-section \[m²\] and its mean square distance from the bone's line in the
 /// plane of motion \[m²\]: a box for the palm, circles for the rest.
-fn cross_section(body: &Body, part: Part) -> (f64, f64) {
+pub(crate) fn cross_section(body: &Body, part: Part) -> (f64, f64) {
     let half_width = body.arm.half_width_m;
     let radius = match part {
         Part::Palm => {

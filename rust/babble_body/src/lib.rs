@@ -2,6 +2,7 @@
 
 pub mod arm;
 pub mod config;
+pub mod description;
 pub mod dynamics;
 mod error;
 pub mod eye;

@@ -90,6 +90,11 @@ impl GraspTask {
         convert::json(&self.task.spec())
     }
 
+    /// Links of arm and hand, as JSON.
+    fn robot(&self) -> PyResult<String> {
+        convert::json(&self.task.robot.description())
+    }
+
     /// Cases of a protocol: `table2`, `fig7` (None where the arm would begin in the object), or
     /// `random` ones of the task's region.
     fn cases<'py>(

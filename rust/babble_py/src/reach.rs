@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use babble_agent::reference;
-use babble_body::Obstacle;
+use babble_body::{Obstacle, description};
 use babble_env::reach::case::{CaseRequest, ObstacleRequest};
 use babble_env::reach::movement::{Fidelity, MovementPath};
 use babble_env::reach::{ReachState, SENSES, goal_reward, protocol};
@@ -85,6 +85,16 @@ impl ReachTask {
     /// Observations, actions, reward terms and outcomes, as JSON.
     fn spec(&self) -> PyResult<String> {
         convert::json(&self.task.spec())
+    }
+
+    /// Links of arm and hand, as JSON.
+    fn robot(&self) -> PyResult<String> {
+        convert::json(&description::reaching(&self.task.config.body))
+    }
+
+    /// Posture \[rad\] that puts the fingertip at a point \[m\]; None if it is out of reach.
+    fn posture_at(&self, point: [f64; 2]) -> Option<[f64; 2]> {
+        self.task.arm.posture_at(point.into())
     }
 
     /// Cases of Table I: `n` legal movements of the full simulation.

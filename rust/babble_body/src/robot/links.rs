@@ -4,6 +4,7 @@
 //! the thumb is open.
 
 use nalgebra::Vector3;
+use serde::Serialize;
 
 use crate::config::{Body, Fingers, Muscles};
 
@@ -21,17 +22,23 @@ pub enum Part {
 }
 
 /// A solid in the frame of its link \[m\].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Solid {
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(tag = "shape", rename_all = "snake_case")]
+pub enum Solid {
     /// A capsule from `a` to `b`.
     Capsule {
+        /// One end of its axis.
         a: Vector3<f64>,
+        /// The other end.
         b: Vector3<f64>,
+        /// Its radius.
         radius: f64,
     },
     /// A box along the axes.
     Cuboid {
+        /// Its centre.
         centre: Vector3<f64>,
+        /// Half its edges.
         half: Vector3<f64>,
     },
 }

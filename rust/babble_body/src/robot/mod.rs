@@ -5,6 +5,7 @@
 //! made for this robot, and `rapier`, a general one, its reference.
 
 mod clearance;
+mod description;
 mod kinematics;
 mod links;
 mod muscles;
@@ -20,8 +21,8 @@ use crate::config::{Body, Engine};
 use crate::obstacle::Obstacle;
 pub use kinematics::Frame;
 use kinematics::{MAX_JOINTS, place};
-pub use links::Part;
 use links::{FOREARM, Link};
+pub use links::{Part, Solid};
 pub use muscles::{Drive, Posture, Pull, towards};
 use touch::SLOTS;
 pub use touch::Touch;

@@ -191,8 +191,8 @@ class Contact:
     """Damping of a contact divided by its stiffness: the time in which surfaces part when nothing
     presses them [s] [C]."""
     stiction_m_s: float = 1e-4
-    """Sliding speed at which friction is 0.7 of its full force [m/s] [C]. What seems to stick creeps
-    at a fraction of it."""
+    """Sliding speed at which friction is 0.7 of its full force [m/s] [C]. What seems to stick
+    creeps at a fraction of it."""
 
 
 def _paper_joints() -> dict[str, Joint]:

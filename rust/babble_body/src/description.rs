@@ -1,11 +1,12 @@
 //! Arm and hand as plain data, for exporters: links, joints, muscles, masses and solids.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use serde::Serialize;
 
 use crate::arm::PlanarArm;
 use crate::config::{Body, Muscles};
 use crate::dynamics::{Dynamics, cross_section};
+use crate::inertia::Inertia;
 use crate::joints::ARM_JOINTS;
 use crate::robot::Solid;
 use crate::skeleton::{self, Bone, Part};
@@ -41,17 +42,6 @@ pub struct LinkDescription {
     pub solids: Vec<NamedSolid>,
 }
 
-/// Mass of a rigid body.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Inertia {
-    /// Mass \[kg\].
-    pub mass: f64,
-    /// Centre of mass \[m\].
-    pub centre: Vector3<f64>,
-    /// Inertia about the centre of mass, columns along the axes \[kg·m²\].
-    pub inertia: Matrix3<f64>,
-}
-
 /// A solid and its name.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NamedSolid {
@@ -60,65 +50,6 @@ pub struct NamedSolid {
     /// The solid \[m\].
     #[serde(flatten)]
     pub solid: Solid,
-}
-
-impl Inertia {
-    /// A solid of a density \[kg/m³\].
-    #[must_use]
-    pub fn of(solid: &Solid, density: f64) -> Self {
-        match *solid {
-            Solid::Capsule { a, b, radius } => capsule(a, b, radius, density),
-            Solid::Cuboid { centre, half } => {
-                let mass = density * 8.0 * half.x * half.y * half.z;
-                let spread = half.component_mul(&half) * (mass / 3.0);
-                Self::from_spread(mass, centre, Matrix3::from_diagonal(&spread))
-            }
-        }
-    }
-
-    /// From ∫ r rᵀ dm about the centre \[kg·m²\].
-    fn from_spread(mass: f64, centre: Vector3<f64>, spread: Matrix3<f64>) -> Self {
-        Self {
-            mass,
-            centre,
-            inertia: Matrix3::from_diagonal_element(spread.trace()) - spread,
-        }
-    }
-
-    /// All of them as one rigid body.
-    pub fn sum(parts: impl Iterator<Item = Self> + Clone) -> Self {
-        let mass: f64 = parts.clone().map(|part| part.mass).sum();
-        let moment: Vector3<f64> = parts.clone().map(|part| part.centre * part.mass).sum();
-        let centre = moment / mass;
-        let about = |part: Self| {
-            let d = part.centre - centre;
-            let shifted = Matrix3::from_diagonal_element(d.norm_squared()) - d * d.transpose();
-            part.inertia + shifted * part.mass
-        };
-        Self {
-            mass,
-            centre,
-            inertia: parts.map(about).sum(),
-        }
-    }
-}
-
-/// A cylinder and the two halves of a ball.
-fn capsule(a: Vector3<f64>, b: Vector3<f64>, radius: f64, density: f64) -> Inertia {
-    use std::f64::consts::PI;
-    let (length, square) = ((b - a).norm(), radius * radius);
-    let direction = (b - a) / length;
-    let along = direction * direction.transpose();
-    let cylinder = density * PI * square * length;
-    let ball = density * 4.0 / 3.0 * PI * square * radius;
-    // Across the axis, where a ball's halves are as spread as the ball.
-    let round = (cylinder / 4.0 + ball / 5.0) * square;
-    // Along it: a half ball's centre is 3/8 of its radius beyond the cylinder's end.
-    let long = cylinder * length * length / 12.0
-        + ball * (square / 5.0 + length * length / 4.0 + 3.0 / 8.0 * length * radius);
-    let across = Matrix3::identity() - along;
-    let spread = across * round + along * long;
-    Inertia::from_spread(cylinder + ball, (a + b) / 2.0, spread)
 }
 
 /// The arm as it reaches: upper arm, and forearm with its rigid hand.

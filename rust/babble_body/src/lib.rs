@@ -6,6 +6,7 @@ pub mod description;
 pub mod dynamics;
 mod error;
 pub mod eye;
+pub mod inertia;
 pub mod joints;
 pub mod obstacle;
 pub mod pose;

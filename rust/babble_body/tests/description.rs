@@ -5,8 +5,9 @@ mod grasping;
 use std::collections::HashSet;
 
 use babble_body::config::Fingers;
-use babble_body::description::{self, Inertia, LinkDescription};
+use babble_body::description::{self, LinkDescription};
 use babble_body::eye::Shape;
+use babble_body::inertia::Inertia;
 use babble_body::robot::Solid;
 use babble_body::{Body, Dynamics, PlanarArm, Robot};
 use grasping::{DT, FAR, setup};

@@ -3,7 +3,7 @@
 use super::Robot;
 use super::links::{Link, Muscle, Part, Solid};
 use crate::config::Fingers;
-use crate::description::{Inertia, LinkDescription, NamedSolid};
+use crate::description::{LinkDescription, NamedSolid};
 use crate::joints::ARM_JOINTS;
 
 /// From the lowest to the highest, as the links have them.
@@ -29,7 +29,6 @@ impl Robot {
             Muscle::Elbow => "forearm".to_owned(),
             Muscle::Thumb | Muscle::Finger => joint.clone(),
         };
-        let density = self.body.arm.density_kg_m3;
         LinkDescription {
             parent: link.parent,
             origin: link.origin.into(),
@@ -38,11 +37,7 @@ impl Robot {
             range: self.ranges[link.muscle.index()],
             stops: false,
             muscles: link.muscle.settings(&self.body),
-            inertia: Inertia::sum(
-                link.solids
-                    .iter()
-                    .map(|(_, solid)| Inertia::of(solid, density)),
-            ),
+            inertia: link.inertia(self.body.arm.density_kg_m3),
             solids: named(&name, &link.solids),
             name,
             joint,

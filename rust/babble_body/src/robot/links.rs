@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 use serde::Serialize;
 
 use crate::config::{Body, Fingers, Muscles};
+use crate::inertia::Inertia;
 
 /// What a link belongs to, as touch tells it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -103,6 +104,12 @@ impl Link {
     /// 1 if the joint turns counter-clockwise, −1 if clockwise.
     pub(super) const fn sense(&self) -> f64 {
         if self.clockwise { -1.0 } else { 1.0 }
+    }
+
+    /// Its mass, as the sum of its solids, which may overlap.
+    pub(super) fn inertia(&self, density: f64) -> Inertia {
+        let solids = self.solids.iter();
+        Inertia::sum(solids.map(|(_, solid)| Inertia::of(solid, density)))
     }
 }
 

@@ -5,63 +5,26 @@ use nalgebra::Vector2;
 use super::factor::{BALL, Matrix};
 use super::{Tree, rotate};
 use crate::robot::kinematics::{MAX_JOINTS, Placed};
-use crate::robot::links::{Link, Solid};
+use crate::robot::links::Link;
 
-/// Mass of a link and how it is spread.
+/// Mass of a link and how it is spread in the plane of motion.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Inertia {
+pub(super) struct Planar {
     /// \[kg\]
     mass: f64,
-    /// Centre of mass in the link's frame, in the plane of motion \[m\].
+    /// Centre of mass in the link's frame \[m\].
     centre: Vector2<f64>,
     /// Moment about the vertical through the centre of mass \[kg·m²\].
     moment: f64,
 }
 
-impl Inertia {
-    /// The sum over the link's solids, which may overlap.
+impl Planar {
     pub(super) fn of(link: &Link, density: f64) -> Self {
-        let solids = || {
-            let own = link.solids.iter();
-            own.map(|(_, solid)| Self::of_solid(solid, density))
-        };
-        let mass: f64 = solids().map(|solid| solid.mass).sum();
-        let weighted: Vector2<f64> = solids().map(|solid| solid.centre * solid.mass).sum();
-        let centre = weighted / mass;
-        let moment = solids()
-            .map(|solid| solid.moment + solid.mass * (solid.centre - centre).norm_squared())
-            .sum();
+        let whole = link.inertia(density);
         Self {
-            mass,
-            centre,
-            moment,
-        }
-    }
-
-    fn of_solid(solid: &Solid, density: f64) -> Self {
-        match solid {
-            Solid::Capsule { a, b, radius } => {
-                let (length, square) = ((b - a).norm(), radius * radius);
-                let section = std::f64::consts::PI * square;
-                let middle = density * section * length;
-                let ends = density * section * radius * 4.0 / 3.0;
-                // Half a ball's centre of mass is 3/8 of its radius from its flat side.
-                let out = 0.5 * length + 0.375 * radius;
-                let of_ends = ends * ((0.4 - 0.375 * 0.375) * square + out * out);
-                Self {
-                    mass: middle + ends,
-                    centre: (a + b).xy() / 2.0,
-                    moment: middle * (length * length / 12.0 + square / 4.0) + of_ends,
-                }
-            }
-            Solid::Cuboid { centre, half } => {
-                let mass = 8.0 * density * half.x * half.y * half.z;
-                Self {
-                    mass,
-                    centre: centre.xy(),
-                    moment: mass * half.xy().norm_squared() / 3.0,
-                }
-            }
+            mass: whole.mass,
+            centre: whole.centre.xy(),
+            moment: whole.inertia[(2, 2)],
         }
     }
 }

@@ -20,7 +20,7 @@ mod term;
 use nalgebra::Vector3;
 
 use self::factor::{BALL, Matrix, SIZE, Sparsity};
-use self::mechanics::{Inertia, Speeds};
+use self::mechanics::{Planar, Speeds};
 use super::GRAVITY;
 use super::kinematics::{MAX_JOINTS, Placed, place};
 use super::links::{Link, Solid};
@@ -36,7 +36,7 @@ type Velocities = [f64; SIZE];
 #[derive(Debug, Clone)]
 pub(super) struct Tree {
     links: Vec<Link>,
-    inertias: Vec<Inertia>,
+    inertias: Vec<Planar>,
     damping: Vec<f64>,
     solids: Vec<Placement>,
     sparsity: Sparsity,
@@ -70,7 +70,7 @@ impl Tree {
         Self {
             inertias: links
                 .iter()
-                .map(|link| Inertia::of(link, body.arm.density_kg_m3))
+                .map(|link| Planar::of(link, body.arm.density_kg_m3))
                 .collect(),
             damping: links
                 .iter()

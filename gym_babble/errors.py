@@ -7,6 +7,7 @@ __all__ = [
     "ActionError",
     "AgentFileError",
     "BabbleError",
+    "BusyError",
     "ConfigError",
     "MissingExtraError",
     "ScenarioError",
@@ -29,6 +30,10 @@ class ActionError(BabbleError, ValueError):
 
 class ScenarioError(BabbleError, ValueError):
     """A case asked for cannot be played."""
+
+
+class BusyError(BabbleError, RuntimeError):
+    """An environment or agent was used by two threads at once. The later call changed nothing."""
 
 
 class SnapshotError(BabbleError, ValueError):

@@ -98,7 +98,7 @@ def scenarios(
     if PROTOCOLS[protocol] == "grasp":
         region = protocol if protocol == "palm_side" else "full"
         task = _core.GraspTask(config_json(body), region=region)
-        cases = task.cases(protocol, many, seed, split)
+        cases = task.cases(protocol, many, seed, split, threads)
     elif protocol == "table1":
         cases = _core.ReachTask(config_json(body)).table1(many, seed, split, threads)
     else:

@@ -61,17 +61,6 @@ def test_weights_are_copies_in_the_documented_layout(learnt):
     assert learnt.weights["weights"].max() <= np.float32(0.2)
 
 
-def test_learning_in_parts_or_with_other_threads_is_the_same(learnt):
-    variant = learnt.variant
-    parts = HebbBabbling(variant=variant, seed=3, quasi_static=True, threads=1)
-    parts.learn(250).learn(250).learn(100)
-    assert_same(parts.weights, learnt.weights)
-    assert parts.movements == learnt.movements
-    for threads in (2, 8):
-        other = HebbBabbling(variant=variant, seed=3, quasi_static=True, threads=threads)
-        assert_same(other.learn(600).weights, learnt.weights)
-
-
 def test_the_same_seed_learns_the_same_and_another_does_not():
     agents = [HebbBabbling(seed=seed).learn(60) for seed in (1, 1, 2)]
     assert_same(agents[0].weights, agents[1].weights)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import multiprocessing
 import pickle
 import warnings
 
@@ -128,21 +127,6 @@ def test_one_seed_fixes_all_the_episodes_that_follow(env_id):
     assert_same(first, rollout(again, actions))
     flat = gymnasium.make(env_id, obs="flat", reward="sparse")
     assert len({flat.reset(seed=seed)[0].tobytes() for seed in range(20)}) == 20
-
-
-def unseeded_rollout(env_id, seed):
-    env = gymnasium.make(env_id)
-    actions = drawn_actions(env.action_space, 60, 1)
-    env.reset(seed=seed)
-    return rollout(env, actions)
-
-
-def test_another_process_plays_the_same():
-    played = (IDS[0], IDS[3], GRASP_IDS[0])
-    with multiprocessing.get_context("spawn").Pool(1) as pool:
-        elsewhere = pool.starmap(unseeded_rollout, [(env_id, 3) for env_id in played])
-    for env_id, seen in zip(played, elsewhere, strict=True):
-        assert_same(seen, unseeded_rollout(env_id, 3))
 
 
 def copies(env):

@@ -137,12 +137,6 @@ def test_babbled_hands_are_those_of_their_objects(agent):
     assert ((left["arm"] >= 0) & (left["arm"] <= 1)).all()
 
 
-def test_learning_does_not_depend_on_threads():
-    one, two = (HebbGrasping(seed=5, threads=n).learn(20) for n in (1, 2))
-    for name, weights in one.weights.items():
-        np.testing.assert_array_equal(two.weights[name], weights)
-
-
 @pytest.mark.parametrize(
     ("make", "match"),
     [

@@ -332,46 +332,6 @@ def test_pictures_and_videos(tmp_path):
     assert len(list(tmp_path.glob("*.mp4"))) == 2
 
 
-@pytest.mark.parametrize("start_method", ["fork", "spawn"])
-def test_subprocesses(start_method):
-    script = f"""
-import warnings
-import numpy as np
-from stable_baselines3.common.env_util import make_vec_env
-from stable_baselines3.common.vec_env import SubprocVecEnv
-from gym_babble.sb3 import BabbleVecEnv
-
-if __name__ == "__main__":
-    batch = BabbleVecEnv("BabbleReach-v0", 2, obs="flat", threads=2)
-    batch.seed(4)
-    first = batch.reset()
-    batch.step(np.ones((2, 2), np.float32))
-    with warnings.catch_warnings():
-        # Forking a process with threads warns from Python 3.12 on; that it works is the test.
-        warnings.simplefilter("ignore", DeprecationWarning)
-        envs = make_vec_env(
-            "gym_babble:BabbleReach-v0",
-            n_envs=2,
-            env_kwargs={{"obs": "flat"}},
-            vec_env_cls=SubprocVecEnv,
-            vec_env_kwargs={{"start_method": "{start_method}"}},
-        )
-    envs.seed(4)
-    assert np.array_equal(first, envs.reset())
-    envs.step(np.ones((2, 2), np.float32))
-    envs.close()
-    print("equal")
-"""
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", script],
-        check=False,
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
-    assert done.stdout.strip().endswith("equal"), done.stderr
-
-
 @pytest.mark.parametrize("module", ["sb3", "ppo"])
 def test_names_the_extra_that_is_missing(module):
     script = f"""

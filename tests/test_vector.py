@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import copy
-import multiprocessing
 import pickle
-import threading
-import time
 import warnings
 
 import gymnasium
@@ -28,6 +25,7 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv, VectorEnv
 from gymnasium.wrappers import vector as wrappers
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from processes import forking
 
 from gym_babble import scenarios
 from gym_babble.envs import BabbleGraspEnv, BabbleGraspVectorEnv, BabbleReachVectorEnv
@@ -109,18 +107,6 @@ def test_environment_i_is_the_single_one_seeded_s_plus_i(env_id):
             assert_same(info, info_of(seen[k][-1], i))
             assert not k or reward == seen[k][1][i]
         assert episodes >= 2
-
-
-@pytest.mark.parametrize(("task", "n"), [("reach", 130), ("grasp", 18)])
-def test_threads_do_not_change_a_bit(task, n):
-    seen = {}
-    for threads in (1, 2, 8):
-        envs = BATCHES[task](n, threads=threads, autoreset_mode="SameStep", max_episode_steps=40)
-        actions = drawn_actions(envs.action_space, 60, 0)
-        seen[threads] = [envs.reset(seed=1)] + [envs.step(action) for action in actions]
-        assert envs.threads == threads
-    assert_same(seen[1], seen[2])
-    assert_same(seen[1], seen[8])
 
 
 @pytest.mark.parametrize(("task", "n"), [("reach", 64), ("grasp", 4)])
@@ -340,17 +326,17 @@ def test_make_vec_makes_it_in_every_mode(task, mode):
     envs.close()
 
 
-@pytest.mark.parametrize("context", ["fork", "spawn"])
 @pytest.mark.parametrize(
     ("env_id", "shared_memory"), [(IDS[2], True), (IDS[2], False), (GRASP_IDS[2], True)]
 )
-def test_gymnasiums_processes_work(context, env_id, shared_memory):
-    envs = gymnasium.make_vec(
-        env_id,
-        num_envs=2,
-        vectorization_mode="async",
-        vector_kwargs={"context": context, "shared_memory": shared_memory},
-    )
+def test_gymnasiums_processes_work(env_id, shared_memory):
+    with forking():
+        envs = gymnasium.make_vec(
+            env_id,
+            num_envs=2,
+            vectorization_mode="async",
+            vector_kwargs={"shared_memory": shared_memory},
+        )
     native = gymnasium.make_vec(env_id, num_envs=2)
     assert_same(native.reset(seed=1), envs.reset(seed=1))
     for action in drawn_actions(native.action_space, 5, 0):
@@ -369,56 +355,6 @@ def test_make_vec_sets_the_time_limit_itself(env_id):
     assert truncated.all()
     assert list(infos["outcome"]) == ["timeout"] * 2
     assert (observation["time"] == 1).all()
-
-
-def step_in_child(envs, action, queue):
-    queue.put([envs.step(action), envs.step(action)])
-
-
-@pytest.mark.parametrize(("task", "n"), [("reach", 64), ("grasp", 4)])
-def test_a_forked_child_steps_a_batch_whose_threads_ran_in_its_parent(task, n):
-    envs = BATCHES[task](n, threads=2)
-    envs.reset(seed=0)
-    action = drawn_actions(envs.action_space, 1, 0)[0]
-    envs.step(action)
-    context = multiprocessing.get_context("fork")
-    queue = context.Queue()
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DeprecationWarning)  # Python 3.12: threads and fork.
-        child = context.Process(target=step_in_child, args=(envs, action, queue))
-        child.start()
-    try:
-        theirs = queue.get(timeout=20)
-    finally:
-        child.join(timeout=5)
-        if child.is_alive():
-            child.kill()
-    assert_same(theirs, [envs.step(action), envs.step(action)])
-
-
-def test_other_python_threads_run_while_the_batch_steps():
-    envs = BabbleReachVectorEnv(512, control="pattern", threads=1)
-    envs.reset(seed=0)
-    action = drawn_actions(envs.action_space, 1, 0)[0]
-    begun, stop, moments = threading.Event(), threading.Event(), []
-
-    def watch():
-        while not stop.is_set():
-            moments.append(time.perf_counter())
-            begun.set()
-            time.sleep(0.001)
-
-    watcher = threading.Thread(target=watch)
-    watcher.start()
-    begun.wait()
-    started = time.perf_counter()
-    envs._batch.step(action)
-    ended = time.perf_counter()
-    stop.set()
-    watcher.join()
-    # With the lock held not one moment lies within the step.
-    within = [moment for moment in moments if started + 0.002 < moment < ended - 0.002]
-    assert len(within) >= 3, (len(moments), ended - started)
 
 
 @pytest.mark.parametrize(("env_id", "size"), [(IDS[0], 11), (GRASP_IDS[0], 455)])

@@ -161,7 +161,6 @@ class HebbGrasping(GraspAgent):
         numbers = json.loads(_core.GraspHebb.default_config())
         merge(numbers, config or {}, "config")
         self._hebb = _core.GraspHebb(json.dumps(numbers), seed, processors(threads))
-        self._babbled: list[Mapping[str, Any]] = []
 
     def learn(
         self,
@@ -172,6 +171,8 @@ class HebbGrasping(GraspAgent):
     ) -> HebbGrasping:
         """Babbles until the hand has kept so many more objects, and learns from these.
 
+        Interrupted by Ctrl-C, the agent is as after the last 50 of them, and can go on from there.
+
         Args:
             babbles: Objects kept in the hand to learn from.
             progress_bar: Show a bar with the time left.
@@ -179,15 +180,21 @@ class HebbGrasping(GraspAgent):
 
         Returns:
             The agent itself.
+
+        Raises:
+            ConfigError: `babbles` is not a whole number of at least 0.
+            ScenarioError: The hand keeps hardly any object.
+            BusyError: Another thread uses the agent.
         """
         check_whole("babbles", babbles, 0, 10_000_000, "babbles")
         chunks = [BABBLES_A_CALL] * (babbles // BABBLES_A_CALL)
         if babbles % BABBLES_A_CALL:
             chunks.append(babbles % BABBLES_A_CALL)
-        for chunk in track(chunks, "babbling", total=babbles, show=progress_bar):
-            self._babbled.append(self._hebb.learn(self._choices.task, chunk))
-            if callback is not None and callback(self) is False:
-                break
+        with self._hebb:
+            for chunk in track(chunks, "babbling", total=babbles, show=progress_bar):
+                self._hebb.learn(self._choices.task, chunk)
+                if callback is not None and callback(self) is False:
+                    break
         return self
 
     def decide(self, eyes: NDArray[np.float32], foveae: NDArray[np.float32]) -> NDArray[np.float64]:
@@ -243,7 +250,6 @@ class HebbGrasping(GraspAgent):
         agent = cls.__new__(cls)
         GraspAgent.__init__(agent, BabbleGraspEnv(body=json.loads(config)) if env is None else env)
         agent._hebb = core  # noqa: SLF001 - its own
-        agent._babbled = []  # noqa: SLF001
         return agent
 
     @property
@@ -267,14 +273,7 @@ class HebbGrasping(GraspAgent):
 
         `eye` (n, 2), `fovea` (n, 441), `arm` (n, 2), `hand` (n, 2) [deg] and `diameter` (n,) [m].
         """
-        shapes = {"eye": (0, 2), "fovea": (0, 441), "arm": (0, 2), "hand": (0, 2), "diameter": (0,)}
-        kinds = {"diameter": np.float64}
-        return {
-            name: np.concatenate(
-                [np.empty(shape, kinds.get(name, np.float32)), *(p[name] for p in self._babbled)]
-            )
-            for name, shape in shapes.items()
-        }
+        return self._hebb.babbled()  # type: ignore[return-value]
 
     @property
     def babbles(self) -> int:

@@ -77,6 +77,8 @@ class HebbBabbling(MovementAgent):
     ) -> HebbBabbling:
         """Babbles until so many more movements were legal, and learns from these.
 
+        Interrupted by Ctrl-C, the agent is as after the last 250 of them, and can go on from there.
+
         Args:
             movements: Legal movements to learn from; the paper's 20,000.
             progress_bar: Show a bar with the time left.
@@ -84,16 +86,22 @@ class HebbBabbling(MovementAgent):
 
         Returns:
             The agent itself.
+
+        Raises:
+            ConfigError: `movements` is negative.
+            ScenarioError: Hardly any movement is legal on this body.
+            BusyError: Another thread uses the agent.
         """
         if movements < 0:
             raise ConfigError(f"movements = {movements} is not at least 0")
         chunks = [MOVEMENTS_A_CALL] * (movements // MOVEMENTS_A_CALL)
         if movements % MOVEMENTS_A_CALL:
             chunks.append(movements % MOVEMENTS_A_CALL)
-        for chunk in track(chunks, "babbling", total=movements, show=progress_bar):
-            self._hebb.learn(self._choices.task, chunk)
-            if callback is not None and callback(self) is False:
-                break
+        with self._hebb:
+            for chunk in track(chunks, "babbling", total=movements, show=progress_bar):
+                self._hebb.learn(self._choices.task, chunk)
+                if callback is not None and callback(self) is False:
+                    break
         return self
 
     def decide(self, senses: NDArray[np.float32]) -> NDArray[np.float64]:

@@ -64,19 +64,21 @@ class BabbleEnv(gymnasium.Env[Any, Any]):
             ConfigError: An option is unknown.
             ScenarioError: The case asked for cannot be played. The options are forgotten, and the
                 episode goes on.
+            BusyError: Another thread uses the environment.
         """
         request = None if options is None else self._choices.request(options)
-        super().reset(seed=seed)
-        if seed is not None or not self._seeded:
-            self._batch.seed(0, int(self.np_random.integers(2**63)))
-            self._seeded = True
-        if request is not None:
-            self._batch.request(0, request)
-        self._batch.reset()
-        self._one.begin()
-        observation, _, _, _, info = self._look()
-        if self.render_mode == "human":
-            self._show()
+        with self._batch:
+            super().reset(seed=seed)
+            if seed is not None or not self._seeded:
+                self._batch.seed(0, int(self.np_random.integers(2**63)))
+                self._seeded = True
+            if request is not None:
+                self._batch.request(0, request)
+            self._batch.reset()
+            self._one.begin()
+            observation, _, _, _, info = self._complete(self._batch.one())
+            if self.render_mode == "human":
+                self._show()
         return observation, info
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
@@ -85,16 +87,20 @@ class BabbleEnv(gymnasium.Env[Any, Any]):
         Raises:
             ActionError: The action is NaN, infinite or of a wrong shape or type.
             gymnasium.error.ResetNeeded: The episode has ended, or never began.
+            BusyError: Another thread uses the environment.
         """
-        self._batch.step_one(as_actions(action, self._shape))
-        result = self._look()
-        if self.render_mode == "human":
-            self._show()
+        with self._batch:
+            shown = self._batch.step_one(as_actions(action, self._shape))
+            result = self._complete(shown)
+            if self.render_mode == "human":
+                self._show()
         return result
 
-    def _look(self) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+    def _complete(
+        self, shown: tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]
+    ) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         choices = self._choices
-        senses, reward, terminated, truncated, info = self._batch.one()
+        senses, reward, terminated, truncated, info = shown
         goals = self._batch.one_goals() if choices.obs == "goal" else []
         retina = self._one.retina() if choices.obs == "retina" else None
         return choices.observation(senses, goals, retina), reward, terminated, truncated, info
@@ -118,9 +124,10 @@ class BabbleEnv(gymnasium.Env[Any, Any]):
         Raises:
             gymnasium.error.ResetNeeded: There was no reset yet.
         """
-        if self.render_mode == "human" and self._one.ready:
-            return self._show()
-        return self._one.render()
+        with self._batch:
+            if self.render_mode == "human" and self._one.ready:
+                return self._show()
+            return self._one.render()
 
     def _show(self) -> None:
         if self._window is None:
@@ -144,8 +151,9 @@ class BabbleEnv(gymnasium.Env[Any, Any]):
         Raises:
             SnapshotError: The bytes are not such a state; the environment is as it was.
         """
-        self._one.set_state(state)
-        self._seeded = True
+        with self._batch:
+            self._one.set_state(state)
+            self._seeded = True
 
     def state_hash(self) -> int:
         """A number that two states share only if they are the same to the bit."""

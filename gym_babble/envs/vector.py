@@ -116,18 +116,20 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
             ConfigError: An option is unknown or of a wrong length.
             ScenarioError: A case asked for cannot be played. The options are forgotten, and all
                 episodes go on.
+            BusyError: Another thread uses the batch.
         """
         mask, requests = self._read_options(options)
-        self._seed(seed, mask)
         chosen = np.flatnonzero(mask).tolist()
-        if requests is not None:
+        with self._batch:
+            self._seed(seed, mask)
+            if requests is not None:
+                for i in chosen:
+                    self._batch.request(i, requests[i])
+            self._batch.reset(mask.tolist())
             for i in chosen:
-                self._batch.request(i, requests[i])
-        self._batch.reset(mask.tolist())
-        for i in chosen:
-            self._ones[i].begin()
-        shown = self._batch.all()
-        return self._observation(shown), self._infos(shown, mask)
+                self._ones[i].begin()
+            shown = self._batch.all()
+            return self._observation(shown), self._infos(shown, mask)
 
     def step(
         self, actions: Any
@@ -137,13 +139,17 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
         Raises:
             ActionError: An action is NaN, infinite or of a wrong shape or type.
             gymnasium.error.ResetNeeded: An environment has to be reset first. Nothing was stepped.
+            ScenarioError: No case could be drawn for an ended episode. All environments have to be
+                reset, as after an interruption by Ctrl-C.
+            BusyError: Another thread uses the batch.
         """
-        self._batch.step(as_actions(actions, self._shape))
-        shown = self._batch.all()
-        infos = self._infos(shown, np.ones(self.num_envs, np.bool_))
-        if self._autoreset is AutoresetMode.SAME_STEP:
-            self._add_final(infos)
-        observation = self._observation(shown)
+        with self._batch:
+            self._batch.step(as_actions(actions, self._shape))
+            shown = self._batch.all()
+            infos = self._infos(shown, np.ones(self.num_envs, np.bool_))
+            if self._autoreset is AutoresetMode.SAME_STEP:
+                self._add_final(infos)
+            observation = self._observation(shown)
         return observation, shown["reward"], shown["terminated"], shown["truncated"], infos
 
     def _read_options(self, options: Any) -> tuple[NDArray[np.bool_], list[dict[str, Any]] | None]:
@@ -259,7 +265,8 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
         Raises:
             gymnasium.error.ResetNeeded: There was no reset yet.
         """
-        return tuple(one.render() for one in self._ones)
+        with self._batch:
+            return tuple(one.render() for one in self._ones)
 
     @property
     def compute_reward(self) -> Callable[[Any, Any, Any], Any]:
@@ -321,7 +328,8 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
 
     def get_state(self) -> list[bytes]:
         """The state of each environment, from which `set_state` continues bit for bit."""
-        return [one.get_state() for one in self._ones]
+        with self._batch:
+            return [one.get_state() for one in self._ones]
 
     def set_state(self, states: Sequence[bytes]) -> None:
         """Continues each environment from a state.
@@ -332,20 +340,22 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
         """
         if len(states) != self.num_envs:
             raise ConfigError(f"{len(states)} states, expected {self.num_envs}")
-        before = [one.freeze() for one in self._ones]
-        try:
-            for one, state in zip(self._ones, states, strict=True):
-                one.set_state(state)
-        except (TypeError, ValueError):
-            for one, frozen in zip(self._ones, before, strict=True):
-                one.thaw(frozen)
-            raise
-        self._seeded = True
+        with self._batch:
+            before = [one.freeze() for one in self._ones]
+            try:
+                for one, state in zip(self._ones, states, strict=True):
+                    one.set_state(state)
+            except BaseException:  # Ctrl-C too.
+                for one, frozen in zip(self._ones, before, strict=True):
+                    one.thaw(frozen)
+                raise
+            self._seeded = True
 
     def __getstate__(self) -> dict[str, Any]:
         hidden = ("_batch", "_choices", "_ones")
         state = {k: v for k, v in self.__dict__.items() if k not in hidden}
-        return {"attributes": state, "core": [one.freeze() for one in self._ones]}
+        with self._batch:
+            return {"attributes": state, "core": [one.freeze() for one in self._ones]}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state["attributes"])

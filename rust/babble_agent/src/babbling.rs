@@ -1,7 +1,7 @@
 //! Random movements (motor babbling), of which the legal ones are experienced.
 
 use babble_env::reach::movement::{Fidelity, MovementPath};
-use babble_env::{EnvError, Pool, Purpose, ReachCase, ReachTask, Stream};
+use babble_env::{EnvError, Pool, Purpose, ReachCase, ReachTask, Stop, Stream};
 use rayon::prelude::*;
 
 use crate::error::AgentError;
@@ -65,23 +65,35 @@ impl Babbling {
     /// Babbles until `n` more movements were legal.
     ///
     /// # Errors
-    /// [`AgentError::NothingLegal`] when legal movements are too rare, or an error of the task.
+    /// [`AgentError::NothingLegal`] when legal movements are too rare, or an error of the task or the
+    /// pool; the sequence is then where it was.
     pub fn experience(
         &mut self,
         task: &ReachTask,
         n: usize,
         pool: &mut Pool,
     ) -> Result<Vec<Experience>, AgentError> {
+        let mut ahead = self.clone();
+        let found = pool.run_until(|stop| ahead.babble(task, n, stop))??;
+        *self = ahead;
+        Ok(found)
+    }
+
+    fn babble(
+        &mut self,
+        task: &ReachTask,
+        n: usize,
+        stop: &Stop,
+    ) -> Result<Vec<Experience>, AgentError> {
         let mut found = Vec::with_capacity(n);
         let (seed, fidelity) = (self.seed, self.fidelity);
         while found.len() < n {
+            stop.check()?;
             let first = self.movements;
-            let tried: Vec<_> = pool.run(|| {
-                (first..first + CHUNK)
-                    .into_par_iter()
-                    .map(|k| movement(task, fidelity, Stream::new(Purpose::Learning, seed, k)))
-                    .collect()
-            })?;
+            let tried: Vec<_> = (first..first + CHUNK)
+                .into_par_iter()
+                .map(|k| movement(task, fidelity, Stream::new(Purpose::Learning, seed, k)))
+                .collect();
             for result in tried {
                 if found.len() == n {
                     break;

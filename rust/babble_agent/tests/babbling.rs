@@ -1,9 +1,13 @@
 //! Babbling and learning: what they depend on, and that they learn.
 
+use std::time::Instant;
+
 use babble_agent::{AgentError, Babbling, Experience, Hebb, HebbConfig, Variant};
 use babble_env::reach::movement::{Fidelity, MovementPath};
 use babble_env::reach::protocol;
-use babble_env::{Config, Control, Options, Outcome, Pool, Purpose, ReachCase, ReachTask};
+use babble_env::{
+    Config, Control, EnvError, Options, Outcome, Pool, Purpose, ReachCase, ReachTask,
+};
 
 fn task() -> ReachTask {
     let options = Options {
@@ -60,6 +64,34 @@ fn babbling_resumes() {
     assert_ne!(first, rest);
     let mut other = Babbling::new(5, Fidelity::QuasiStatic);
     assert_ne!(other.experience(&task, 30, &mut pool).unwrap(), first);
+}
+
+/// Interrupted babbling ends within moments, has experienced nothing, and goes on as if it had not
+/// begun; so does the drawing of cases. Catches movements that are counted and forgotten.
+#[test]
+fn interrupted_babbling_is_where_it_was() {
+    let task = task();
+    let (whole, _) = babble(Fidelity::Full, &[60], 2);
+    for threads in [1, 2] {
+        let mut babbling = Babbling::new(4, Fidelity::Full);
+        assert_eq!(
+            babbling.experience(&task, 30, &mut pool(threads)).unwrap(),
+            whole[..30]
+        );
+        let before = (babbling.movements(), babbling.legal());
+        let mut impatient = pool(threads).interrupted_by(|| true);
+        let began = Instant::now();
+        let result = babbling.experience(&task, 1_000_000, &mut impatient);
+        assert_eq!(result, Err(AgentError::Env(EnvError::Interrupted)));
+        let cases = protocol::table1(&task, 1_000_000, 0, Purpose::Validation, &mut impatient);
+        assert_eq!(cases, Err(EnvError::Interrupted));
+        let seconds = began.elapsed().as_secs_f64();
+        println!("{threads} threads: interrupted twice in {seconds:.3} s");
+        assert!(seconds < 2.0, "{seconds} s");
+        assert_eq!((babbling.movements(), babbling.legal()), before);
+        let rest = babbling.experience(&task, 30, &mut pool(threads)).unwrap();
+        assert_eq!(rest, whole[30..]);
+    }
 }
 
 /// About one movement in five is legal, as the paper says, with the percepts in their ranges and

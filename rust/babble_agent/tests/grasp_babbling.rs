@@ -1,11 +1,13 @@
 //! Babbling with the object in the hand and what is learnt from it.
 
+use std::time::Instant;
+
 use babble_agent::AgentError;
 use babble_agent::grasp::holding::trials;
 use babble_agent::grasp::{Experience, GraspBabbling, GraspHebb, GraspHebbConfig};
 use babble_brain::{MapConfig, PopulationMap};
 use babble_env::grasp::{FOVEA_NEURONS, GraspCase};
-use babble_env::{Autoreset, Batch, Config, GraspOptions, GraspTask, Pool};
+use babble_env::{Autoreset, Batch, Config, EnvError, GraspOptions, GraspTask, Pool};
 
 const DIAMETERS: [f64; 2] = [0.024, 0.06];
 
@@ -103,6 +105,28 @@ fn kept_objects_are_in_the_hand() {
         // The small one nearly lets the fingers close.
         let least = if *diameter < 0.03 { 0.01 } else { 0.3 };
         assert!(flexion[1] < reflex[1] - least, "{flexion:?}");
+    }
+}
+
+/// Interrupted babbling, and trials of the reflex, end within moments; the sequence goes on as if
+/// they had not begun. Catches a check for which a whole chunk of babbles is waited.
+#[test]
+fn interrupted_babbling_is_where_it_was() {
+    let task = task();
+    let (whole, babbles) = babble(4, &[3], 2);
+    for threads in [1, 2] {
+        let mut babbling = GraspBabbling::new(4);
+        let mut impatient = pool(threads).interrupted_by(|| true);
+        let began = Instant::now();
+        let result = babbling.experience(&task, 10_000, &mut impatient);
+        assert_eq!(result, Err(AgentError::Env(EnvError::Interrupted)));
+        let result = trials(&task, 0.05, 10_000, &mut impatient);
+        assert_eq!(result, Err(EnvError::Interrupted));
+        let seconds = began.elapsed().as_secs_f64();
+        println!("{threads} threads: interrupted twice in {seconds:.3} s");
+        assert!(seconds < 2.0, "{seconds} s");
+        let rest = babbling.experience(&task, 3, &mut pool(threads)).unwrap();
+        assert_eq!((rest, babbling.babbles()), (whole.clone(), babbles));
     }
 }
 

@@ -65,18 +65,22 @@ impl Block {
         block
     }
 
-    /// Eq. 7 for all weights `w` (outputs × `n_in`).
+    /// Eq. 7 for all weights `w` (outputs × `n_in`), in this thread.
     pub(crate) fn learn(&self, w: &mut [f32], n_in: usize, w_max: f32) {
-        let (row_group, a_group) = (ROWS * n_in, ROWS * self.movements);
-        if w.len() * self.movements < PARALLEL {
-            for (rows, a) in w.chunks_mut(row_group).zip(self.a.chunks(a_group)) {
-                self.learn_rows(rows, a, n_in, w_max);
-            }
-        } else {
-            w.par_chunks_mut(row_group)
-                .zip(self.a.par_chunks(a_group))
-                .for_each(|(rows, a)| self.learn_rows(rows, a, n_in, w_max));
+        let rows = w.chunks_mut(ROWS * n_in);
+        for (rows, a) in rows.zip(self.a.chunks(ROWS * self.movements)) {
+            self.learn_rows(rows, a, n_in, w_max);
         }
+    }
+
+    /// The same, in the threads of the current rayon pool if there is enough to do.
+    pub(crate) fn learn_shared(&self, w: &mut [f32], n_in: usize, w_max: f32) {
+        if w.len() * self.movements < PARALLEL {
+            return self.learn(w, n_in, w_max);
+        }
+        w.par_chunks_mut(ROWS * n_in)
+            .zip(self.a.par_chunks(ROWS * self.movements))
+            .for_each(|(rows, a)| self.learn_rows(rows, a, n_in, w_max));
     }
 
     /// Eq. 7 for some rows of weights; `a` holds their scaled deviations.

@@ -139,7 +139,8 @@ impl Association {
     /// ```
     ///
     /// Activities are in \[0, 1\]; then |w| ≤ `w_max` to one unit in the last place, unclipped. A
-    /// deviation below 1e-10 counts as zero, an average below 1e-20 becomes zero.
+    /// deviation below 1e-10 counts as zero, an average below 1e-20 becomes zero. Runs in the thread
+    /// that calls.
     ///
     /// # Errors
     /// [`BrainError::Length`] or [`BrainError::Activity`] names the slice; nothing is learnt then.
@@ -148,7 +149,8 @@ impl Association {
         check_length("a", self.n_out, a.len())?;
         check_activity("g", g)?;
         check_activity("a", a)?;
-        self.learn_blocks(g, a);
+        let block = Block::new(&self.config, g, a, &mut self.g_bar, &mut self.a_bar);
+        block.learn(&mut self.w, self.n_in, self.config.w_max);
         Ok(())
     }
 
@@ -164,7 +166,11 @@ impl Association {
         check_length("as_", movements * self.n_out, as_.len())?;
         check_activity("gs", gs)?;
         check_activity("as_", as_)?;
-        self.learn_blocks(gs, as_);
+        let a_blocks = as_.chunks(BLOCK * self.n_out);
+        for (g, a) in gs.chunks(BLOCK * self.n_in).zip(a_blocks) {
+            let block = Block::new(&self.config, g, a, &mut self.g_bar, &mut self.a_bar);
+            block.learn_shared(&mut self.w, self.n_in, self.config.w_max);
+        }
         Ok(())
     }
 
@@ -181,14 +187,6 @@ impl Association {
             *a_j = libm::tanhf(dot(row, g).max(0.0));
         }
         Ok(())
-    }
-
-    fn learn_blocks(&mut self, gs: &[f32], as_: &[f32]) {
-        let a_blocks = as_.chunks(BLOCK * self.n_out);
-        for (g, a) in gs.chunks(BLOCK * self.n_in).zip(a_blocks) {
-            let block = Block::new(&self.config, g, a, &mut self.g_bar, &mut self.a_bar);
-            block.learn(&mut self.w, self.n_in, self.config.w_max);
-        }
     }
 
     /// Parameters of the rule.

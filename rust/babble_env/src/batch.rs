@@ -3,8 +3,6 @@
 use std::fmt;
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use crate::choice::named_enum;
 use crate::error::EnvError;
 use crate::pool::Pool;
@@ -100,6 +98,19 @@ impl<T: Task> Batch<T> {
         autoreset: Autoreset,
         threads: usize,
     ) -> Result<Self, EnvError> {
+        Self::with_pool(task, n, autoreset, Pool::new(threads)?)
+    }
+
+    /// The same with a pool that may be interrupted: what it interrupts is told at each method.
+    ///
+    /// # Errors
+    /// [`EnvError::OutOfBounds`] for no environments; [`EnvError::Interrupted`].
+    pub fn with_pool(
+        task: Arc<T>,
+        n: usize,
+        autoreset: Autoreset,
+        pool: Pool,
+    ) -> Result<Self, EnvError> {
         if !(1..=1_000_000).contains(&n) {
             return Err(EnvError::OutOfBounds {
                 option: "num_envs",
@@ -107,16 +118,17 @@ impl<T: Task> Batch<T> {
                 bound: "in [1, 1000000]".to_owned(),
             });
         }
-        let slot = |i: usize| {
+        let mut slots = Vec::with_capacity(n);
+        pool.in_turn(0..n, |_, i| {
             let stream = Stream::new(Purpose::Environment, 0, i as u64);
-            Slot::new(&*task, T::Episode::new(&task, stream))
-        };
-        let slots = (0..n).map(slot).collect();
+            slots.push(Slot::new(&*task, T::Episode::new(&task, stream)));
+            Ok(())
+        })?;
         Ok(Self {
+            task,
             slots,
             autoreset,
-            pool: Pool::new(threads)?,
-            task,
+            pool,
         })
     }
 
@@ -192,61 +204,58 @@ impl<T: Task> Batch<T> {
     ///
     /// # Errors
     /// The first error in the order of the environments, after which all of them are as they were.
+    /// [`EnvError::Interrupted`], after which those that `mask` chose need a reset.
     pub fn reset(&mut self, mask: &[bool]) -> Result<(), EnvError> {
         let task = &*self.task;
-        let draw = |(slot, &chosen): (&mut Slot<T>, &bool)| {
-            chosen.then(|| slot.env.draw(task)).transpose()
-        };
-        let slots = &mut self.slots;
+        let mut chosen: Vec<_> = self
+            .slots
+            .iter_mut()
+            .zip(mask)
+            .filter_map(|(slot, &chosen)| chosen.then_some((slot, None)))
+            .collect();
         // All are drawn, also after an error, as each forgets what it was asked.
-        let drawn: Vec<_> = if self.pool.threads() == 1 {
-            slots.iter_mut().zip(mask).map(draw).collect()
-        } else {
-            self.pool.run(|| {
-                slots
-                    .par_iter_mut()
-                    .zip(mask.par_iter())
-                    .map(draw)
-                    .collect()
-            })?
-        };
-        let drawn = drawn.into_iter().collect::<Result<Vec<_>, EnvError>>()?;
-        for (slot, drawn) in self.slots.iter_mut().zip(drawn) {
-            slot.last = None;
-            if let Some(drawn) = drawn {
-                slot.begin(task, drawn);
+        let drawn = self.pool.for_each(&mut chosen, 1, |_, (slot, drawn)| {
+            *drawn = Some(slot.env.draw(task)?);
+            Ok(())
+        });
+        let begun = drawn.and_then(|()| {
+            self.pool.for_each(&mut chosen, 1, |_, (slot, drawn)| {
+                if let Some(drawn) = drawn.take() {
+                    slot.last = None;
+                    slot.begin(task, drawn);
+                }
+                Ok(())
+            })
+        });
+        if begun == Err(EnvError::Interrupted) {
+            for (slot, _) in chosen {
+                slot.env.abandon();
             }
         }
-        Ok(())
+        begun
     }
 
     /// One step of every environment; `actions` holds those of the first, then of the second …
     ///
     /// # Errors
     /// [`EnvError::ActionShape`], [`EnvError::ActionNotFinite`] or [`EnvError::NeedsReset`], after
-    /// which nothing was stepped; or the error of an automatic reset.
+    /// which nothing was stepped. After any other, as [`EnvError::Interrupted`] or that of an
+    /// automatic reset, some environments were stepped and what they showed is lost: all need a
+    /// reset.
     pub fn step(&mut self, actions: &[f32]) -> Result<(), EnvError> {
         self.check(actions)?;
         let (task, autoreset) = (&*self.task, self.autoreset);
         let width = task.action_len();
-        let step = |(slot, action): (&mut Slot<T>, &[f32])| slot.step(task, action, autoreset);
-        let slots = &mut self.slots;
-        if self.pool.threads() == 1 {
-            return slots
-                .iter_mut()
-                .zip(actions.chunks_exact(width))
-                .map(step)
-                .fold(Ok(()), Result::and);
+        let least = task.min_per_thread();
+        let stepped = self.pool.for_each(&mut self.slots, least, |i, slot| {
+            slot.step(task, &actions[i * width..][..width], autoreset)
+        });
+        if stepped.is_err() {
+            for slot in &mut self.slots {
+                slot.env.abandon();
+            }
         }
-        let results: Vec<_> = self.pool.run(|| {
-            slots
-                .par_iter_mut()
-                .with_min_len(T::MIN_PER_THREAD)
-                .zip(actions.par_chunks_exact(width))
-                .map(step)
-                .collect()
-        })?;
-        results.into_iter().collect()
+        stepped
     }
 
     fn check(&self, actions: &[f32]) -> Result<(), EnvError> {

@@ -93,6 +93,9 @@ pub enum EnvError {
     /// A parameter of the pattern generators is out of bounds.
     #[error(transparent)]
     Brain(#[from] BrainError),
+    /// Whoever waited for it does so no more.
+    #[error("interrupted")]
+    Interrupted,
     /// Threads could not be started.
     #[error("cannot start {threads} threads: {problem}")]
     Threads {

@@ -21,7 +21,7 @@ pub use error::EnvError;
 pub use grasp::{GraspCase, GraspOptions, GraspTask};
 pub use options::{Control, Reward};
 pub use outcome::Outcome;
-pub use pool::Pool;
+pub use pool::{Pool, Stop};
 pub use reach::{Movement, MovementPath, Options, ReachCase, ReachTask};
 pub use stream::{Purpose, Stream};
 pub use task::Task;

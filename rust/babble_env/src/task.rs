@@ -24,8 +24,9 @@ pub trait Task: Send + Sync + Sized + 'static {
     const NAME: &'static str;
     /// First bytes of its snapshots.
     const MAGIC: [u8; 4];
+
     /// Environments that a thread steps at least: their steps must outlast handing them over.
-    const MIN_PER_THREAD: usize;
+    fn min_per_thread(&self) -> usize;
 
     /// Numbers in an action.
     fn action_len(&self) -> usize;
@@ -98,6 +99,9 @@ pub trait Episode: Send + Sync {
     /// Begins an episode that was drawn.
     fn begin(&mut self, task: &Self::Task, drawn: Self::Drawn);
 
+    /// Leaves the episode unfinished: it has to be reset before it can step.
+    fn abandon(&mut self);
+
     /// One step of a running episode. `action` has [`Task::action_len`] numbers, all finite; those
     /// outside of [−1, 1] are clipped.
     ///
@@ -115,7 +119,7 @@ pub trait Episode: Send + Sync {
 /// Whether an episode can be stepped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Phase {
-    /// Never reset.
+    /// Never reset, or abandoned.
     Fresh,
     /// Between reset and end.
     Running,

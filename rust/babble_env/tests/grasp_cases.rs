@@ -5,7 +5,8 @@ mod playing;
 
 use babble_env::grasp::{GraspCase, GraspRequest, InHand, Region, protocol};
 use babble_env::{
-    Autoreset, Batch, Config, Control, EnvError, GraspOptions, GraspTask, Purpose, Reward, Stream,
+    Autoreset, Batch, Config, Control, EnvError, GraspOptions, GraspTask, Pool, Purpose, Reward,
+    Stream,
 };
 use nalgebra::Vector3;
 use playing::bits;
@@ -37,6 +38,10 @@ fn gap(task: &GraspTask, case: &GraspCase) -> f64 {
         - case.radius()
 }
 
+fn random(task: &GraspTask, n: usize, seed: u64, purpose: Purpose) -> Vec<GraspCase> {
+    protocol::random(task, n, seed, purpose, &mut Pool::new(2).unwrap()).unwrap()
+}
+
 fn polar([x, y]: [f64; 2]) -> [f64; 2] {
     [x.hypot(y), y.atan2(x).to_degrees()]
 }
@@ -52,7 +57,7 @@ fn inside(value: f64, [low, high]: [f64; 2]) -> bool {
 #[test]
 fn drawn_cases_keep_to_their_region() {
     for task in tasks() {
-        let cases = protocol::random(&task, 150, 1, Purpose::Test).unwrap();
+        let cases = random(&task, 150, 1, Purpose::Test);
         let region = task.region();
         for case in &cases {
             let [radius, direction] = polar(case.object);
@@ -99,7 +104,7 @@ fn drawn_cases_keep_to_their_region() {
 fn diameters_are_a_list_or_a_range() {
     let draw = |json| {
         let task = grasp_with(json, GraspOptions::default());
-        let cases = protocol::random(&task, 100, 2, Purpose::Test).unwrap();
+        let cases = random(&task, 100, 2, Purpose::Test);
         let mut all: Vec<f64> = cases.iter().map(|case| case.diameter).collect();
         all.sort_by(f64::total_cmp);
         all
@@ -118,7 +123,7 @@ fn diameters_are_a_list_or_a_range() {
 #[test]
 fn cases_depend_on_purpose_seed_and_index_alone() {
     let task = grasp(GraspOptions::default());
-    let draw = |n, seed, purpose| protocol::random(&task, n, seed, purpose).unwrap();
+    let draw = |n, seed, purpose| random(&task, n, seed, purpose);
     let cases = draw(40, 0, Purpose::Test);
     assert_eq!(draw(15, 0, Purpose::Test), cases[..15]);
     for other in [draw(40, 1, Purpose::Test), draw(40, 0, Purpose::Validation)] {
@@ -131,7 +136,7 @@ fn cases_depend_on_purpose_seed_and_index_alone() {
 #[test]
 fn requests_are_kept() {
     let task = grasp(goal_form(Control::Posture));
-    let model = protocol::random(&task, 1, 3, Purpose::Test).unwrap()[0];
+    let model = random(&task, 1, 3, Purpose::Test)[0];
     let aside = obstacle([-0.3, -0.3], 0.02);
     for mask in 0_u32..32 {
         let pick = |bit: u32| mask & (1 << bit) != 0;
@@ -451,10 +456,7 @@ fn a_stream_gives_its_case() {
     let mut stream = Stream::new(Purpose::Test, 4, 2);
     let (first, second) = (draw(&mut stream), draw(&mut stream));
     assert_ne!(first, second);
-    assert_eq!(
-        protocol::random(&task, 3, 4, Purpose::Test).unwrap()[2],
-        first
-    );
+    assert_eq!(random(&task, 3, 4, Purpose::Test)[2], first);
 }
 
 /// The object that is put at the palm is 1 mm before it, on its support, untouched; the reflex then

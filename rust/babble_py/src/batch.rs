@@ -9,9 +9,10 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyString, PyTuple};
 
 use crate::convert::{PyTask, table};
-use crate::errors;
 use crate::grasp::GraspTask;
+use crate::guarded::Guarded;
 use crate::reach::ReachTask;
+use crate::{errors, signals};
 
 /// Indices of the environments whose episode ended, and what those episodes showed last.
 type Ended<'py> = (Bound<'py, PyArray1<usize>>, Bound<'py, PyDict>);
@@ -41,10 +42,12 @@ macro_rules! with {
 }
 
 /// A batch of n episodes, stepped together.
-#[pyclass(module = "gym_babble._core")]
+///
+/// In `with batch:` no other thread can use it.
+#[pyclass(frozen, module = "gym_babble._core")]
 #[derive(Debug)]
 pub(crate) struct Batch {
-    envs: AnyBatch,
+    envs: Guarded<AnyBatch>,
     senses: usize,
     /// Names of the facts.
     facts: Vec<Py<PyString>>,
@@ -64,14 +67,17 @@ impl Batch {
         threads: usize,
     ) -> PyResult<Self> {
         let autoreset = autoreset.parse::<Autoreset>().map_err(errors::env)?;
+        let pool = signals::pool(threads).map_err(errors::env)?;
         let envs = match task {
             AnyTask::Reach(task) => {
                 let task = task.get().task.clone();
-                babble_env::Batch::new(task, num_envs, autoreset, threads).map(AnyBatch::Reach)
+                py.detach(|| babble_env::Batch::with_pool(task, num_envs, autoreset, pool))
+                    .map(AnyBatch::Reach)
             }
             AnyTask::Grasp(task) => {
                 let task = task.get().task.clone();
-                babble_env::Batch::new(task, num_envs, autoreset, threads).map(AnyBatch::Grasp)
+                py.detach(|| babble_env::Batch::with_pool(task, num_envs, autoreset, pool))
+                    .map(AnyBatch::Grasp)
             }
         };
         let envs = envs.map_err(errors::env)?;
@@ -82,27 +88,41 @@ impl Batch {
             names.iter().map(name).collect()
         };
         Ok(Self {
-            envs,
+            envs: Guarded::new("environment", envs),
             senses,
             facts: names(spec.facts),
             terms: names(spec.reward_terms),
         })
     }
 
+    fn __enter__(&self) -> PyResult<()> {
+        self.envs.enter()
+    }
+
+    fn __exit__(
+        &self,
+        _type: &Bound<'_, PyAny>,
+        _raised: &Bound<'_, PyAny>,
+        _at: &Bound<'_, PyAny>,
+    ) {
+        self.envs.leave();
+    }
+
     /// Starts the stream of cases of environment `i` anew.
-    fn seed(&mut self, i: usize, seed: u64) -> PyResult<()> {
-        with!(&mut self.envs, batch => batch.seed(i, seed)).map_err(errors::env)
+    fn seed(&self, i: usize, seed: u64) -> PyResult<()> {
+        with!(&mut *self.envs.write()?, batch => batch.seed(i, seed)).map_err(errors::env)
     }
 
     /// What the following resets of environment `i` ask of their cases, in the task's own words.
-    fn request(&mut self, i: usize, asked: &Bound<'_, PyDict>) -> PyResult<()> {
-        with!(&mut self.envs, batch => request(batch, i, asked))
+    fn request(&self, i: usize, asked: &Bound<'_, PyDict>) -> PyResult<()> {
+        with!(&mut *self.envs.write()?, batch => request(batch, i, asked))
     }
 
     /// Begins new episodes where `mask` is true; in all environments without one.
     #[pyo3(signature = (mask=None))]
-    fn reset(&mut self, py: Python<'_>, mask: Option<Vec<bool>>) -> PyResult<()> {
-        let n = with!(&self.envs, batch => batch.len());
+    fn reset(&self, py: Python<'_>, mask: Option<Vec<bool>>) -> PyResult<()> {
+        let envs = &mut *self.envs.write()?;
+        let n = with!(envs, batch => batch.len());
         let mask = mask.unwrap_or_else(|| vec![true; n]);
         if mask.len() != n {
             return Err(errors::env(EnvError::OutOfBounds {
@@ -111,76 +131,68 @@ impl Batch {
                 bound: format!("of length {n}"),
             }));
         }
-        py.detach(|| with!(&mut self.envs, batch => batch.reset(&mask)))
+        py.detach(|| with!(envs, batch => batch.reset(&mask)))
             .map_err(errors::env)
     }
 
     /// One step of all environments; `actions` (n, k).
-    fn step(&mut self, py: Python<'_>, actions: PyReadonlyArrayDyn<'_, f32>) -> PyResult<()> {
-        let actions: Vec<f32> = actions.as_array().iter().copied().collect();
-        py.detach(|| with!(&mut self.envs, batch => batch.step(&actions)))
+    fn step(&self, py: Python<'_>, actions: PyReadonlyArrayDyn<'_, f32>) -> PyResult<()> {
+        let envs = &mut *self.envs.write()?;
+        // A copy, as other threads may write to the array meanwhile.
+        let actions = copied(&actions);
+        py.detach(|| with!(envs, batch => batch.step(&actions)))
             .map_err(errors::env)
     }
 
-    /// One step of a batch of one; without letting go of the interpreter if it takes microseconds.
-    fn step_one(&mut self, py: Python<'_>, actions: PyReadonlyArrayDyn<'_, f32>) -> PyResult<()> {
-        if with!(&self.envs, batch => has_long_steps(batch)) {
-            return self.step(py, actions);
+    /// One step of a batch of one, and what it shows, as [`Self::one`]; without letting go of the
+    /// interpreter if it takes microseconds.
+    fn step_one<'py>(
+        &self,
+        py: Python<'py>,
+        actions: PyReadonlyArrayDyn<'py, f32>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        let envs = &mut *self.envs.write()?;
+        if with!(envs, batch => has_long_steps(batch)) {
+            let actions = copied(&actions);
+            py.detach(|| with!(envs, batch => batch.step(&actions)))
+        } else if let Ok(actions) = actions.as_slice() {
+            with!(envs, batch => batch.step(actions))
+        } else {
+            with!(envs, batch => batch.step(&copied(&actions)))
         }
-        let mut step = |actions: &[f32]| with!(&mut self.envs, batch => batch.step(actions));
-        match actions.as_slice() {
-            Ok(actions) => step(actions),
-            Err(_) => step(&actions.as_array().iter().copied().collect::<Vec<_>>()),
-        }
-        .map_err(errors::env)
+        .map_err(errors::env)?;
+        self.show_one(py, envs)
     }
 
     /// What environment 0 showed last: (senses, reward, terminated, truncated, info).
     fn one<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        let Some(Record {
-            senses,
-            standing,
-            step,
-        }) = self.first()
-        else {
-            return Ok(PyTuple::empty(py));
-        };
-        let info = named(py, &self.facts, &standing.facts)?;
-        info.set_item(intern!(py, "outcome"), standing.outcome.name())?;
-        let terms = named(py, &self.terms, &step.terms)?;
-        info.set_item(intern!(py, "reward_terms"), terms)?;
-        (
-            PyArray1::from_slice(py, senses),
-            step.reward,
-            step.terminated,
-            step.truncated,
-            info,
-        )
-            .into_pyobject(py)
+        self.show_one(py, &*self.envs.read()?)
     }
 
     /// Achieved and desired goal of environment 0 (2,) \[m\].
-    fn one_goals<'py>(&self, py: Python<'py>) -> Vec<Bound<'py, PyArray1<f32>>> {
-        self.first().map_or_else(Vec::new, |record| {
+    fn one_goals<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray1<f32>>>> {
+        Ok(first(&*self.envs.read()?).map_or_else(Vec::new, |record| {
             [record.standing.achieved, record.standing.desired]
                 .map(|x| PyArray1::from_slice(py, &x))
                 .into()
-        })
+        }))
     }
 
     /// What all environments showed last, in new arrays of length n: senses, achieved goals, desired
     /// goals, rewards, terminated, truncated, outcome codes, facts, reward terms.
     fn all<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let envs = &*self.envs.read()?;
         self.arrays(
             py,
-            &with!(&self.envs, batch => batch.records().collect::<Vec<_>>()),
+            &with!(envs, batch => batch.records().collect::<Vec<_>>()),
         )
     }
 
     /// The same for the episodes that ended within the last step and were begun anew, and their
     /// indices; None if there are none.
     fn ended<'py>(&self, py: Python<'py>) -> PyResult<Option<Ended<'py>>> {
-        let ended: Vec<(usize, &Record)> = with!(&self.envs, batch => batch
+        let envs = &*self.envs.read()?;
+        let ended: Vec<(usize, &Record)> = with!(envs, batch => batch
             .last()
             .enumerate()
             .filter_map(|(i, last)| Some((i, &last?.record)))
@@ -197,18 +209,18 @@ impl Batch {
 
     /// Bytes from which environment `i` continues bit for bit.
     fn save<'py>(&self, py: Python<'py>, i: usize) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = with!(&self.envs, batch => batch.save(i)).map_err(errors::env)?;
+        let bytes = with!(&*self.envs.read()?, batch => batch.save(i)).map_err(errors::env)?;
         Ok(PyBytes::new(py, &bytes))
     }
 
     /// Continues environment `i` from bytes.
-    fn load(&mut self, i: usize, bytes: &[u8]) -> PyResult<()> {
-        with!(&mut self.envs, batch => batch.load(i, bytes)).map_err(errors::env)
+    fn load(&self, i: usize, bytes: &[u8]) -> PyResult<()> {
+        with!(&mut *self.envs.write()?, batch => batch.load(i, bytes)).map_err(errors::env)
     }
 
     /// A number that two states share only if they are the same to the bit.
     fn state_hash(&self, i: usize) -> PyResult<u64> {
-        with!(&self.envs, batch => {
+        with!(&*self.envs.read()?, batch => {
             batch.state(i).and_then(|state| snapshot::hash(&**batch.task(), state))
         })
         .map_err(errors::env)
@@ -216,19 +228,20 @@ impl Batch {
 
     /// The case of environment `i`, in the task's own words.
     fn case<'py>(&self, py: Python<'py>, i: usize) -> PyResult<Bound<'py, PyDict>> {
-        with!(&self.envs, batch => case(py, batch, i))
+        with!(&*self.envs.read()?, batch => case(py, batch, i))
     }
 
     /// The recorded way of the hand of environment `i`, one row a control step \[m\].
     fn trail<'py>(&self, py: Python<'py>, i: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        with!(&self.envs, batch => {
+        with!(&*self.envs.read()?, batch => {
             batch.task().trail(py, batch.state(i).map_err(errors::env)?)
         })
     }
 
     /// How many moments of environment `i` were recorded since its reset.
     fn moments(&self, i: usize) -> PyResult<usize> {
-        with!(&self.envs, batch => batch.state(i).map(|state| batch.task().moments(state)))
+        let envs = &*self.envs.read()?;
+        with!(envs, batch => batch.state(i).map(|state| batch.task().moments(state)))
             .map_err(errors::env)
     }
 
@@ -243,9 +256,10 @@ impl Batch {
         height: u32,
         frame: Option<usize>,
     ) -> PyResult<Bound<'py, PyArray3<u8>>> {
+        let envs = &*self.envs.read()?;
         let draw = || {
             let view = camera.parse::<View>()?;
-            with!(&self.envs, batch => {
+            with!(envs, batch => {
                 batch.task().picture(batch.state(i)?, view, [width, height], frame)
             })
         };
@@ -261,8 +275,9 @@ impl Batch {
         i: usize,
         size: u32,
     ) -> PyResult<Option<Bound<'py, PyArray3<u8>>>> {
+        let envs = &*self.envs.read()?;
         let draw = || {
-            with!(&self.envs, batch => {
+            with!(envs, batch => {
                 let last = batch.last().nth(i).flatten();
                 last.map(|last| batch.task().picture(&last.state, View::Eye, [size; 2], None))
             })
@@ -278,14 +293,33 @@ impl Batch {
 
     /// Threads that step the batch.
     #[getter]
-    fn threads(&self) -> usize {
-        with!(&self.envs, batch => batch.threads())
+    fn threads(&self) -> PyResult<usize> {
+        Ok(with!(&*self.envs.read()?, batch => batch.threads()))
     }
 }
 
 impl Batch {
-    fn first(&self) -> Option<&Record> {
-        with!(&self.envs, batch => batch.records().next())
+    fn show_one<'py>(&self, py: Python<'py>, envs: &AnyBatch) -> PyResult<Bound<'py, PyTuple>> {
+        let Some(Record {
+            senses,
+            standing,
+            step,
+        }) = first(envs)
+        else {
+            return Ok(PyTuple::empty(py));
+        };
+        let info = named(py, &self.facts, &standing.facts)?;
+        info.set_item(intern!(py, "outcome"), standing.outcome.name())?;
+        let terms = named(py, &self.terms, &step.terms)?;
+        info.set_item(intern!(py, "reward_terms"), terms)?;
+        (
+            PyArray1::from_slice(py, senses),
+            step.reward,
+            step.terminated,
+            step.truncated,
+            info,
+        )
+            .into_pyobject(py)
     }
 
     fn arrays<'py>(&self, py: Python<'py>, records: &[&Record]) -> PyResult<Bound<'py, PyDict>> {
@@ -345,6 +379,16 @@ fn case<'py, T: PyTask>(
 }
 
 /// Whether one step outlasts handing it to a thread.
-fn has_long_steps<T: Task>(_: &babble_env::Batch<T>) -> bool {
-    T::MIN_PER_THREAD == 1
+fn has_long_steps<T: Task>(batch: &babble_env::Batch<T>) -> bool {
+    batch.task().min_per_thread() == 1
+}
+
+/// What environment 0 showed last.
+fn first(envs: &AnyBatch) -> Option<&Record> {
+    with!(envs, batch => batch.records().next())
+}
+
+/// The numbers of an array, in the order of C.
+fn copied(array: &PyReadonlyArrayDyn<'_, f32>) -> Vec<f32> {
+    array.as_array().iter().copied().collect()
 }

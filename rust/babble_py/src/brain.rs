@@ -4,6 +4,7 @@ use babble_brain::{CovarianceConfig, MapConfig, TimeBaseGenerator};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 
+use crate::guarded::Guarded;
 use crate::{convert, errors};
 
 /// The curve (n + 1, 2) of the time base generators (Eq. 5) from (0, 0) to (1, 1), at times kT/n.
@@ -65,10 +66,10 @@ impl PopulationMap {
 }
 
 /// Weights between two maps and the covariance rule (Eq. 7).
-#[pyclass(module = "gym_babble._core")]
+#[pyclass(frozen, module = "gym_babble._core")]
 #[derive(Debug)]
 pub(crate) struct Association {
-    weights: babble_brain::Association,
+    weights: Guarded<babble_brain::Association>,
 }
 
 #[pymethods]
@@ -79,18 +80,21 @@ impl Association {
         let config = CovarianceConfig { eta, w_max, xi };
         let weights =
             babble_brain::Association::new(&config, n_in, n_out).map_err(errors::brain)?;
-        Ok(Self { weights })
+        Ok(Self {
+            weights: Guarded::new("association", weights),
+        })
     }
 
     /// One step of Eq. 7 for input activities g and output activities a.
     fn learn(
-        &mut self,
+        &self,
+        py: Python<'_>,
         g: PyReadonlyArray1<'_, f32>,
         a: PyReadonlyArray1<'_, f32>,
     ) -> PyResult<()> {
-        self.weights
-            .learn(g.as_slice()?, a.as_slice()?)
-            .map_err(errors::brain)
+        let weights = &mut *self.weights.write()?;
+        let (g, a) = (g.as_slice()?.to_vec(), a.as_slice()?.to_vec());
+        py.detach(|| weights.learn(&g, &a)).map_err(errors::brain)
     }
 
     /// Activities of the output map for input activities g.
@@ -99,8 +103,9 @@ impl Association {
         py: Python<'py>,
         g: PyReadonlyArray1<'py, f32>,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let mut a = vec![0.0; self.weights.n_out()];
-        self.weights
+        let weights = self.weights.read()?;
+        let mut a = vec![0.0; weights.n_out()];
+        weights
             .recall(g.as_slice()?, &mut a)
             .map_err(errors::brain)?;
         Ok(PyArray1::from_vec(py, a))
@@ -109,7 +114,7 @@ impl Association {
     /// The weights `w_ji` (`n_out`, `n_in`), as a copy.
     #[getter]
     fn weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let w = &self.weights;
-        PyArray1::from_slice(py, w.weights()).reshape([w.n_out(), w.n_in()])
+        let weights = self.weights.read()?;
+        PyArray1::from_slice(py, weights.weights()).reshape([weights.n_out(), weights.n_in()])
     }
 }

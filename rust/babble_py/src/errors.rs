@@ -6,8 +6,11 @@ use babble_env::EnvError;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::{PyErr, import_exception};
 
+use crate::signals;
+
 import_exception!(gym_babble.errors, ActionError);
 import_exception!(gym_babble.errors, AgentFileError);
+import_exception!(gym_babble.errors, BusyError);
 import_exception!(gym_babble.errors, ConfigError);
 import_exception!(gym_babble.errors, ScenarioError);
 import_exception!(gym_babble.errors, SnapshotError);
@@ -25,6 +28,7 @@ pub(crate) fn env(error: EnvError) -> PyErr {
             ScenarioError::new_err(text)
         }
         EnvError::Snapshot { .. } => SnapshotError::new_err(text),
+        EnvError::Interrupted => signals::raised(),
         EnvError::Threads { .. } => PyRuntimeError::new_err(text),
         _ => ConfigError::new_err(text),
     }

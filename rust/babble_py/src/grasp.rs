@@ -5,13 +5,13 @@ use std::sync::Arc;
 use babble_agent::grasp::holding;
 use babble_body::Obstacle;
 use babble_env::grasp::{GraspState, Region, goal_reward, protocol};
-use babble_env::{Config, Control, GraspCase, GraspOptions, Pool, Reward, Task as _, grasp};
+use babble_env::{Config, Control, GraspCase, GraspOptions, Reward, Task as _, grasp};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::convert::{self, PyTask};
-use crate::{errors, reach};
+use crate::{errors, reach, signals};
 
 /// The grasping task: a config and the choices made with it.
 #[pyclass(frozen, module = "gym_babble._core")]
@@ -104,14 +104,17 @@ impl GraspTask {
         n: usize,
         seed: u64,
         purpose: &str,
+        threads: usize,
     ) -> PyResult<Vec<Option<Bound<'py, PyDict>>>> {
         let cases = match protocol {
-            "table2" => protocol::table2(&self.task),
-            "fig7" => protocol::fig7(&self.task),
+            "table2" => py.detach(|| protocol::table2(&self.task)),
+            "fig7" => py.detach(|| protocol::fig7(&self.task)),
             _ => {
                 let purpose = reach::parse_purpose(purpose).map_err(errors::env)?;
-                let drawn = py.detach(|| protocol::random(&self.task, n, seed, purpose));
-                drawn.map_err(errors::env)?.into_iter().map(Some).collect()
+                let draw =
+                    || protocol::random(&self.task, n, seed, purpose, &mut signals::pool(threads)?);
+                let drawn = py.detach(draw).map_err(errors::env)?;
+                drawn.into_iter().map(Some).collect()
             }
         };
         let dict = |found: &Option<GraspCase>| found.as_ref().map(|c| case(py, c)).transpose();
@@ -141,7 +144,7 @@ impl GraspTask {
         threads: usize,
     ) -> PyResult<(usize, f64, [f64; 2])> {
         let trials = py
-            .detach(|| holding::trials(&self.task, diameter, n, &mut Pool::new(threads)?))
+            .detach(|| holding::trials(&self.task, diameter, n, &mut signals::pool(threads)?))
             .map_err(errors::env)?;
         let mean = |i: usize| trials.iter().map(|t| t.flexion[i]).sum::<f64>() / n as f64;
         Ok((

@@ -1,26 +1,57 @@
 //! The Hebb agent of grasping: its network and its babbling.
 
+use babble_agent::AgentError;
 use babble_agent::grasp::{self, GraspBabbling, GraspHebbConfig};
 use babble_env::grasp::FOVEA_NEURONS;
-use babble_env::{Config, Pool};
+use babble_env::{Config, EnvError, Pool};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::grasp::GraspTask;
-use crate::{convert, errors};
+use crate::guarded::Guarded;
+use crate::{convert, errors, signals};
 
-/// What babbling leaves behind: eye (n, 2), fovea (n, 441), arm (n, 2), hand (n, 2) and diameter
-/// (n,).
-type Experiences<'py> = Bound<'py, PyDict>;
-
-/// A network that learns by babbling with the object in the hand.
-#[pyclass(module = "gym_babble._core")]
+/// A network that learns by babbling with the object in the hand. In `with hebb:` no other thread
+/// can use it.
+#[pyclass(frozen, module = "gym_babble._core")]
 #[derive(Debug)]
 pub(crate) struct GraspHebb {
+    learner: Guarded<Learner>,
+}
+
+/// What learning changes.
+#[derive(Debug)]
+struct Learner {
     network: grasp::GraspHebb,
     babbling: GraspBabbling,
+    /// What this object's own babbling left behind.
+    babbled: Vec<grasp::Experience>,
     pool: Pool,
+}
+
+impl Learner {
+    fn new(
+        network: grasp::GraspHebb,
+        babbling: GraspBabbling,
+        threads: usize,
+    ) -> Result<Self, EnvError> {
+        Ok(Self {
+            network,
+            babbling,
+            babbled: Vec::new(),
+            pool: signals::pool(threads)?,
+        })
+    }
+
+    /// All of it or, after an error of the babbling, none.
+    fn learn(&mut self, task: &babble_env::GraspTask, n: usize) -> Result<(), AgentError> {
+        let found = self.babbling.experience(task, n, &mut self.pool)?;
+        let network = &mut self.network;
+        self.pool.run(|| network.learn(&found))??;
+        self.babbled.extend(found);
+        Ok(())
+    }
 }
 
 #[pymethods]
@@ -30,11 +61,8 @@ impl GraspHebb {
     fn new(config: &str, seed: u64, threads: usize) -> PyResult<Self> {
         let config: GraspHebbConfig = serde_json::from_str(config)
             .map_err(|error| errors::ConfigError::new_err(format!("agent config: {error}")))?;
-        Ok(Self {
-            network: grasp::GraspHebb::new(config).map_err(errors::agent)?,
-            babbling: GraspBabbling::new(seed),
-            pool: Pool::new(threads).map_err(errors::env)?,
-        })
+        let network = grasp::GraspHebb::new(config).map_err(errors::agent)?;
+        Self::of(network, GraspBabbling::new(seed), threads)
     }
 
     /// The paper's numbers, as JSON.
@@ -49,35 +77,44 @@ impl GraspHebb {
 
     /// Its numbers, as JSON.
     fn config(&self) -> PyResult<String> {
-        convert::json(self.network.config())
+        convert::json(self.learner.read()?.network.config())
     }
 
-    /// Babbles on `task` until `n` more objects were kept, learns from them, and returns them.
-    fn learn<'py>(
-        &mut self,
-        py: Python<'py>,
-        task: &GraspTask,
-        n: usize,
-    ) -> PyResult<Experiences<'py>> {
-        let task: &babble_env::GraspTask = &task.task;
-        let found = py
-            .detach(|| {
-                let found = self.babbling.experience(task, n, &mut self.pool)?;
-                let network = &mut self.network;
-                self.pool.run(|| network.learn(&found))??;
-                Ok(found)
-            })
-            .map_err(errors::agent)?;
+    fn __enter__(&self) -> PyResult<()> {
+        self.learner.enter()
+    }
+
+    fn __exit__(
+        &self,
+        _type: &Bound<'_, PyAny>,
+        _raised: &Bound<'_, PyAny>,
+        _at: &Bound<'_, PyAny>,
+    ) {
+        self.learner.leave();
+    }
+
+    /// Babbles on `task` until `n` more objects were kept, and learns from them; interrupted, it has
+    /// done neither.
+    fn learn(&self, py: Python<'_>, task: &GraspTask, n: usize) -> PyResult<()> {
+        let learner = &mut *self.learner.write()?;
+        py.detach(|| learner.learn(&task.task, n))
+            .map_err(errors::agent)
+    }
+
+    /// What this object's own babbling left behind: eye (n, 2), fovea (n, 441), arm (n, 2), hand
+    /// (n, 2) and diameter (n,).
+    fn babbled<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let babbled = &self.learner.read()?.babbled;
         let dict = PyDict::new(py);
         let pairs = |of: fn(&grasp::Experience) -> [f32; 2]| {
-            convert::array2(py, &found.iter().map(of).collect::<Vec<_>>())
+            convert::array2(py, &babbled.iter().map(of).collect::<Vec<_>>())
         };
         dict.set_item("eye", pairs(|e| e.eye)?)?;
         dict.set_item("arm", pairs(|e| e.arm)?)?;
         dict.set_item("hand", pairs(|e| e.hand)?)?;
-        let fovea = found.iter().map(|e| &e.fovea[..]);
+        let fovea = babbled.iter().map(|e| &e.fovea[..]);
         dict.set_item("fovea", convert::table(py, FOVEA_NEURONS, fovea)?)?;
-        let diameters = found.iter().map(|e| e.diameter);
+        let diameters = babbled.iter().map(|e| e.diameter);
         dict.set_item("diameter", PyArray1::from_iter(py, diameters))?;
         Ok(dict)
     }
@@ -92,8 +129,9 @@ impl GraspHebb {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let eyes = convert::rows::<f32, 2>(&eyes, "eye")?;
         let foveae = convert::rows::<f32, FOVEA_NEURONS>(&foveae, "fovea")?;
+        let network = &self.learner.read()?.network;
         let decide = |(eye, fovea): (&[f32; 2], &[f32; FOVEA_NEURONS])| {
-            let recalled = self.network.decide(*eye, fovea)?;
+            let recalled = network.decide(*eye, fovea)?;
             let ([q1, q2], [thumb, finger]) = (recalled.arm, recalled.hand);
             Ok([q1, q2, thumb, finger])
         };
@@ -114,8 +152,8 @@ impl GraspHebb {
         py: Python<'py>,
         eye: [f32; 2],
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let a = self.network.recall_arm(eye).map_err(errors::agent)?;
-        self.square(py, a)
+        let network = &self.learner.read()?.network;
+        square(py, network, network.recall_arm(eye))
     }
 
     /// Activity of the hand's map (21, 21), rows finger, columns thumb, for a fovea (441,).
@@ -124,17 +162,15 @@ impl GraspHebb {
         py: Python<'py>,
         fovea: PyReadonlyArray1<'py, f32>,
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let a = self.network.recall_hand(fovea.as_slice()?);
-        self.square(py, a.map_err(errors::agent)?)
+        let network = &self.learner.read()?.network;
+        square(py, network, network.recall_hand(fovea.as_slice()?))
     }
 
     /// The weights `w_ji` (outputs, inputs) and the running averages, as copies.
     fn weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let network = &self.learner.read()?.network;
         let dict = PyDict::new(py);
-        for (name, w) in [
-            ("reach", self.network.reach()),
-            ("grasp", self.network.grasp()),
-        ] {
+        for (name, w) in [("reach", network.reach()), ("grasp", network.grasp())] {
             let weights = PyArray1::from_slice(py, w.weights()).reshape([w.n_out(), w.n_in()])?;
             dict.set_item(format!("{name}.weights"), weights)?;
             dict.set_item(format!("{name}.a_bar"), PyArray1::from_slice(py, w.a_bar()))?;
@@ -145,20 +181,23 @@ impl GraspHebb {
 
     /// Babbles made.
     #[getter]
-    fn babbles(&self) -> u64 {
-        self.babbling.babbles()
+    fn babbles(&self) -> PyResult<u64> {
+        Ok(self.learner.read()?.babbling.babbles())
     }
 
     /// In how many of them the hand kept the object.
     #[getter]
-    fn kept(&self) -> u64 {
-        self.babbling.kept()
+    fn kept(&self) -> PyResult<u64> {
+        Ok(self.learner.read()?.babbling.kept())
     }
 
     /// The agent as the bytes of a safetensors file; `config` is the JSON of body and task.
     fn save<'py>(&self, py: Python<'py>, config: &str) -> PyResult<Bound<'py, PyBytes>> {
         let config = Config::from_json(config).map_err(errors::env)?;
-        let bytes = grasp::save(&self.network, &self.babbling, config).map_err(errors::agent)?;
+        let Learner {
+            network, babbling, ..
+        } = &*self.learner.read()?;
+        let bytes = grasp::save(network, babbling, config).map_err(errors::agent)?;
         Ok(PyBytes::new(py, &bytes))
     }
 
@@ -166,22 +205,26 @@ impl GraspHebb {
     #[staticmethod]
     fn load(bytes: &[u8], threads: usize) -> PyResult<(Self, String)> {
         let (network, babbling, config) = grasp::load(bytes).map_err(errors::agent)?;
-        let agent = Self {
-            network,
-            babbling,
-            pool: Pool::new(threads).map_err(errors::env)?,
-        };
+        let agent = Self::of(network, babbling, threads)?;
         Ok((agent, config.to_json().map_err(errors::env)?))
     }
 }
 
 impl GraspHebb {
-    fn square<'py>(
-        &self,
-        py: Python<'py>,
-        activity: Vec<f32>,
-    ) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let side = self.network.config().neurons;
-        PyArray1::from_vec(py, activity).reshape([side, side])
+    fn of(network: grasp::GraspHebb, babbling: GraspBabbling, threads: usize) -> PyResult<Self> {
+        let learner = Learner::new(network, babbling, threads).map_err(errors::env)?;
+        Ok(Self {
+            learner: Guarded::new("agent", learner),
+        })
     }
+}
+
+/// Activity of one of the network's maps, as rows and columns.
+fn square<'py>(
+    py: Python<'py>,
+    network: &grasp::GraspHebb,
+    activity: Result<Vec<f32>, AgentError>,
+) -> PyResult<Bound<'py, PyArray2<f32>>> {
+    let side = network.config().neurons;
+    PyArray1::from_vec(py, activity.map_err(errors::agent)?).reshape([side, side])
 }

@@ -10,8 +10,10 @@ mod convert;
 mod errors;
 mod grasp;
 mod grasp_hebb;
+mod guarded;
 mod hebb;
 mod reach;
+mod signals;
 
 use pyo3::prelude::*;
 

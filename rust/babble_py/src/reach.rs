@@ -7,14 +7,14 @@ use babble_body::{Obstacle, description};
 use babble_env::reach::case::{CaseRequest, ObstacleRequest};
 use babble_env::reach::movement::{Fidelity, MovementPath};
 use babble_env::reach::{ReachState, SENSES, goal_reward, protocol};
-use babble_env::{Config, Control, EnvError, Options, Pool, Purpose, ReachCase, Reward, Task as _};
+use babble_env::{Config, Control, EnvError, Options, Purpose, ReachCase, Reward, Task as _};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
 
 use crate::convert::{self, PyTask};
-use crate::errors;
+use crate::{errors, signals};
 
 /// The reaching task: a config and the choices made with it.
 #[pyclass(frozen, module = "gym_babble._core")]
@@ -109,14 +109,14 @@ impl ReachTask {
     ) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let purpose = parse_purpose(purpose).map_err(errors::env)?;
         let cases = py
-            .detach(|| protocol::table1(&self.task, n, seed, purpose, &mut Pool::new(threads)?))
+            .detach(|| protocol::table1(&self.task, n, seed, purpose, &mut signals::pool(threads)?))
             .map_err(errors::env)?;
         cases.iter().map(|case| case_dict(py, case)).collect()
     }
 
     /// Cases of Fig. 4: 4 targets × 36 starts, None where there is no case.
     fn fig4<'py>(&self, py: Python<'py>) -> PyResult<Vec<Option<Bound<'py, PyDict>>>> {
-        let cases = protocol::fig4(&self.task);
+        let cases = py.detach(|| protocol::fig4(&self.task));
         cases
             .iter()
             .map(|case| case.as_ref().map(|case| case_dict(py, case)).transpose())
@@ -148,7 +148,7 @@ impl ReachTask {
                 .play(task, &case, fidelity, |arm| postures.push(arm.q));
             Ok((movement, MovementPath::desired(task, &case, b)?))
         };
-        let (movement, desired) = play().map_err(errors::env)?;
+        let (movement, desired) = py.detach(&mut play).map_err(errors::env)?;
         let tips: Vec<[f64; 2]> = postures
             .iter()
             .map(|&q| task.arm.fingertip(q).into())
@@ -201,12 +201,18 @@ impl ReachTask {
     ) -> PyResult<Bound<'py, numpy::PyArray3<f32>>> {
         use numpy::PyArrayMethods;
         let (senses, b) = (rows_of_senses(&senses)?, convert::rows::<f64, 2>(&b, "b")?);
-        let steps = self.task.config.reach.movement_steps();
-        let mut all = Vec::with_capacity(senses.len() * steps);
-        for (senses, b) in senses.iter().zip(&b) {
-            let case = reference::case_from_senses(&self.task, senses).map_err(errors::env)?;
-            all.extend(reference::plan(&self.task, &case, *b).map_err(errors::env)?);
-        }
+        let task = &self.task;
+        let steps = task.config.reach.movement_steps();
+        let plans = || {
+            let mut all = Vec::with_capacity(senses.len() * steps);
+            signals::pool(1)?.in_turn(senses.iter().zip(&b), |_, (senses, b)| {
+                let case = reference::case_from_senses(task, senses)?;
+                all.extend(reference::plan(task, &case, *b)?);
+                Ok(())
+            })?;
+            Ok(all)
+        };
+        let all: Vec<[f32; 2]> = py.detach(plans).map_err(errors::env)?;
         PyArray1::from_slice(py, all.as_flattened()).reshape([senses.len(), steps, 2])
     }
 
@@ -241,7 +247,13 @@ impl ReachTask {
             |senses: &[f32; SENSES]| choose(task, &reference::case_from_senses(task, senses)?);
         let chosen: Vec<[f64; 2]> = py
             .detach(|| {
-                Pool::new(threads)?.run(|| senses.par_iter().map(one).collect::<Result<_, _>>())?
+                signals::pool(threads)?.run_until(|stop| {
+                    let unless_stopped = |senses| stop.check().and_then(|()| one(senses));
+                    senses
+                        .par_iter()
+                        .map(unless_stopped)
+                        .collect::<Result<_, _>>()
+                })?
             })
             .map_err(errors::env)?;
         convert::array2(py, &chosen)

@@ -1,7 +1,7 @@
 //! Babbling with the object in the hand: the enclosure reflex closes the hand, the arm moves.
 
 use babble_env::grasp::{FOVEA_NEURONS, GraspTask, InHand};
-use babble_env::{EnvError, Pool, Purpose, Stream};
+use babble_env::{EnvError, Pool, Purpose, Stop, Stream};
 use rayon::prelude::*;
 
 use crate::error::AgentError;
@@ -83,24 +83,38 @@ impl GraspBabbling {
     ///
     /// # Errors
     /// [`AgentError::NothingHeld`] when hands that keep the object are too rare, or an error of the
-    /// threads.
+    /// task or the pool; the sequence is then where it was.
     pub fn experience(
         &mut self,
         task: &GraspTask,
         n: usize,
         pool: &mut Pool,
     ) -> Result<Vec<Experience>, AgentError> {
+        let mut ahead = self.clone();
+        let found = pool.run_until(|stop| ahead.babble(task, n, stop))??;
+        *self = ahead;
+        Ok(found)
+    }
+
+    fn babble(
+        &mut self,
+        task: &GraspTask,
+        n: usize,
+        stop: &Stop,
+    ) -> Result<Vec<Experience>, AgentError> {
         let mut found = Vec::with_capacity(n);
+        let seed = self.seed;
         while found.len() < n {
-            let (seed, first) = (self.seed, self.babbles);
+            let first = self.babbles;
             // No more than may be needed: each takes milliseconds.
             let count = CHUNK.min((n - found.len()) as u64);
-            let tried: Vec<_> = pool.run(|| {
-                (first..first + count)
-                    .into_par_iter()
-                    .map(|k| babble(task, &mut Stream::new(Purpose::Learning, seed, k)))
-                    .collect()
-            })?;
+            let tried: Vec<_> = (first..first + count)
+                .into_par_iter()
+                .map(|k| {
+                    stop.check()?;
+                    babble(task, &mut Stream::new(Purpose::Learning, seed, k))
+                })
+                .collect();
             self.babbles += count;
             for result in tried {
                 if let Some(experience) = result? {

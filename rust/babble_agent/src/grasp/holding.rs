@@ -1,7 +1,7 @@
 //! How well the reflex holds: objects put at the palm, carried about without support.
 
 use babble_env::grasp::{GraspTask, InHand};
-use babble_env::{EnvError, Pool, Purpose, Stream};
+use babble_env::{EnvError, Pool, Purpose, Stop, Stream};
 use rayon::prelude::*;
 
 /// Time that the reflex closes the hand before the support goes \[s\].
@@ -26,27 +26,41 @@ pub struct Trial {
 /// posture, the support goes, and the arm moves for 10 s to a random posture every half second.
 ///
 /// # Errors
-/// An error of the threads.
+/// An error of the task or the pool.
 pub fn trials(
     task: &GraspTask,
     diameter: f64,
     n: usize,
     pool: &mut Pool,
 ) -> Result<Vec<Trial>, EnvError> {
-    pool.run(|| {
+    pool.run_until(|stop| {
         (0..n as u64)
             .into_par_iter()
-            .map(|seed| trial(task, diameter, &mut Stream::new(Purpose::Test, seed, 0)))
+            .map(|seed| {
+                trial(
+                    task,
+                    diameter,
+                    &mut Stream::new(Purpose::Test, seed, 0),
+                    stop,
+                )
+            })
             .collect()
     })?
 }
 
-fn trial(task: &GraspTask, diameter: f64, stream: &mut Stream) -> Result<Trial, EnvError> {
+fn trial(
+    task: &GraspTask,
+    diameter: f64,
+    stream: &mut Stream,
+    stop: &Stop,
+) -> Result<Trial, EnvError> {
+    stop.check()?;
     let mut object = InHand::draw(task, diameter, stream)?;
     let mut penetration = object.carry(task, object.start(), CLOSING_S);
     let [.., thumb, finger] = object.posture(task);
     object.remove_support(task);
     for _ in 0..(MOVING_S / CHANGE_S) as usize {
+        stop.check()?;
         let to = task.draw_free_posture(diameter / 2.0, stream)?;
         penetration = penetration.max(object.carry(task, to, CHANGE_S));
     }

@@ -192,6 +192,10 @@ impl Episode for Grasp {
         self.state.record(task);
     }
 
+    fn abandon(&mut self) {
+        self.state.phase = Phase::Fresh;
+    }
+
     fn step(&mut self, task: &GraspTask, action: &[f32]) -> Result<Step, EnvError> {
         if self.state.phase != Phase::Running {
             return Err(EnvError::NeedsReset { env: 0 });

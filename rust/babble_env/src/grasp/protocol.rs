@@ -1,8 +1,11 @@
 //! The paper's tests by name: the same cases for every agent.
 
+use rayon::prelude::*;
+
 use super::case::{GraspCase, GraspRequest};
 use super::task::GraspTask;
 use crate::error::EnvError;
+use crate::pool::Pool;
 use crate::stream::{Purpose, Stream};
 
 /// Distances of Table II's objects from the shoulder \[m\] and their directions \[deg\] \[C\].
@@ -27,17 +30,24 @@ pub fn fig7(task: &GraspTask) -> Vec<Option<GraspCase>> {
 /// `n` random cases of the task's region. Case i depends on `purpose`, `seed` and i alone.
 ///
 /// # Errors
-/// [`EnvError::NoGraspCase`] when the config leaves no room.
+/// [`EnvError::NoGraspCase`] when the config leaves no room, or an error of the pool.
 pub fn random(
     task: &GraspTask,
     n: usize,
     seed: u64,
     purpose: Purpose,
+    pool: &mut Pool,
 ) -> Result<Vec<GraspCase>, EnvError> {
     let request = GraspRequest::default();
-    (0..n as u64)
-        .map(|i| request.draw(task, &mut Stream::new(purpose, seed, i)))
-        .collect()
+    pool.run_until(|stop| {
+        (0..n as u64)
+            .into_par_iter()
+            .map(|i| {
+                stop.check()?;
+                request.draw(task, &mut Stream::new(purpose, seed, i))
+            })
+            .collect()
+    })?
 }
 
 fn grid(task: &GraspTask, starts: usize) -> Vec<Option<GraspCase>> {

@@ -43,7 +43,10 @@ impl Task for GraspTask {
 
     const NAME: &'static str = "grasping";
     const MAGIC: [u8; 4] = *b"BBGS";
-    const MIN_PER_THREAD: usize = 1;
+
+    fn min_per_thread(&self) -> usize {
+        1
+    }
 
     fn action_len(&self) -> usize {
         4

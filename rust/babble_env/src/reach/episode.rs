@@ -199,6 +199,10 @@ impl Episode for Reach {
         }
     }
 
+    fn abandon(&mut self) {
+        self.state.phase = Phase::Fresh;
+    }
+
     /// One control step, or one whole movement in `pattern` control.
     fn step(&mut self, task: &ReachTask, action: &[f32]) -> Result<Step, EnvError> {
         if self.state.phase != Phase::Running {

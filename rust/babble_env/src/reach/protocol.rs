@@ -19,7 +19,7 @@ const FIG4_STARTS: usize = 36;
 /// Case i depends on `purpose`, `seed` and i alone.
 ///
 /// # Errors
-/// [`EnvError::NoLegalCase`] when the config leaves no room.
+/// [`EnvError::NoLegalCase`] when the config leaves no room, or an error of the pool.
 pub fn table1(
     task: &ReachTask,
     n: usize,
@@ -27,10 +27,11 @@ pub fn table1(
     purpose: Purpose,
     pool: &mut Pool,
 ) -> Result<Vec<ReachCase>, EnvError> {
-    pool.run(|| {
+    pool.run_until(|stop| {
         (0..n as u64)
             .into_par_iter()
             .map(|i| {
+                stop.check()?;
                 ReachCase::draw_legal(task, &mut Stream::new(purpose, seed, i), Fidelity::Full)
             })
             .collect()

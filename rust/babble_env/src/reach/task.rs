@@ -13,7 +13,7 @@ use super::options::Options;
 use super::{picture, spec};
 use crate::config::{Config, ReachNumbers};
 use crate::error::EnvError;
-use crate::options::{Reward, check_max_episode_steps};
+use crate::options::{Control, Reward, check_max_episode_steps};
 use crate::outcome::Outcome;
 use crate::picture::View;
 use crate::spec::Spec;
@@ -47,7 +47,14 @@ impl Task for ReachTask {
 
     const NAME: &'static str = "reaching";
     const MAGIC: [u8; 4] = *b"BBRS";
-    const MIN_PER_THREAD: usize = 8;
+
+    fn min_per_thread(&self) -> usize {
+        // A whole movement, or a control step of about a microsecond.
+        match self.options.control {
+            Control::Pattern => 1,
+            _ => 8,
+        }
+    }
 
     fn action_len(&self) -> usize {
         2

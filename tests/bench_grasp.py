@@ -1,4 +1,4 @@
-"""Benchmarks of the grasping environments from Python: `make bench`, or
+"""Benchmarks of the grasping environments from Python: `make microbench`, or
 
 pytest -o python_files='bench_*.py' --benchmark-only
 

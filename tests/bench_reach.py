@@ -1,4 +1,4 @@
-"""Benchmarks of the reaching environments from Python: `make bench`, or
+"""Benchmarks of the reaching environments from Python: `make microbench`, or
 
 pytest -o python_files='bench_*.py' --benchmark-only [-m slow]
 """

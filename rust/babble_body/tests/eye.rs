@@ -3,8 +3,8 @@
 mod eye_scene;
 
 use babble_body::eye::{
-    Eye, EyeConfig, EyeError, Material, Pinhole, Primitive, Shape, TOWARDS_KEY, is_red, rasterise,
-    red_centroid, render_rgb, render_rgb_into, render_smooth, third_person,
+    Eye, EyeConfig, EyeError, Material, Pinhole, Primitive, Shape, TOWARDS_KEY, draw_red_over,
+    is_red, rasterise, red_centroid, render_rgb, render_rgb_into, render_smooth, third_person,
 };
 use eye_scene::caster::{blocked, cast};
 use nalgebra::Vector3;
@@ -139,6 +139,24 @@ proptest! {
             is_red(picture.get_pixel(i as u32, j as u32).0)
         });
         prop_assert_eq!(red_centroid(&scene, &camera), red);
+    }
+
+    /// A window that is too small, or off by a pixel, would lose or shift some of the red.
+    #[test]
+    fn red_drawn_over_a_picture_is_all_of_the_targets_alone(
+        scene in scene(),
+        over in scene(),
+        (pan, tilt) in gaze(),
+    ) {
+        let camera = view(pan, tilt);
+        let before = render_rgb(&scene, &camera);
+        let mut after = before.clone();
+        draw_red_over(&mut after, &over, &camera);
+        let alone = render_rgb(&over, &camera);
+        for ((after, before), alone) in after.pixels().zip(before.pixels()).zip(alone.pixels()) {
+            prop_assert_eq!(after, if is_red(alone.0) { alone } else { before });
+        }
+        draw_red_over(&mut after, &[], &camera);
     }
 
     #[test]

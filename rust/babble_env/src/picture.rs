@@ -1,7 +1,7 @@
 //! What the eye, and a person, sees of an episode of any task.
 
 use babble_body::eye::{
-    Eye, Gaze, Pinhole, Primitive, foveal_edges, foveal_picture, is_red, render_rgb, render_smooth,
+    Eye, Gaze, Primitive, draw_red_over, foveal_edges, foveal_picture, render_rgb, render_smooth,
     third_person,
 };
 use image::imageops::{FilterType, resize, thumbnail};
@@ -87,23 +87,12 @@ impl Scene<'_> {
             .camera_sized(self.gaze, (edge * rays) as usize)
             .middle((width * rays) as usize, (height * rays) as usize);
         let mut image = render_rgb(self.things, &camera);
-        draw_red_on_top(&mut image, self.on_top, &camera);
+        draw_red_over(&mut image, self.on_top, &camera);
         if rays == 1 {
             image
         } else {
             thumbnail(&image, width, height)
         }
-    }
-}
-
-fn draw_red_on_top(image: &mut RgbImage, things: &[Primitive], camera: &Pinhole) {
-    let alone = render_rgb(things, camera);
-    for (pixel, red) in image
-        .pixels_mut()
-        .zip(alone.pixels())
-        .filter(|(_, p)| is_red(p.0))
-    {
-        *pixel = *red;
     }
 }
 

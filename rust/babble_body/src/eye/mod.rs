@@ -40,5 +40,5 @@ pub use gaze::{Eye, Gaze};
 pub use light::{TOWARDS_KEY, is_red};
 pub use raster::{Raster, rasterise};
 pub use scene::{Material, Primitive, Shape};
-pub use shading::{render_rgb, render_rgb_into, render_smooth};
+pub use shading::{draw_red_over, render_rgb, render_rgb_into, render_smooth};
 pub use view::third_person;

@@ -4,7 +4,7 @@ use image::RgbImage;
 
 use super::ground::Checker;
 use super::ink::Ink;
-use super::light::{Light, SHADOW, Shaded, Swatch, pigment, swatch};
+use super::light::{Light, SHADOW, Shaded, Swatch, is_red, pigment, swatch};
 use super::piece::{Cutter, Piece, cut_scene};
 use super::raster::Buffer;
 use super::row::Lens;
@@ -41,6 +41,29 @@ pub fn render_rgb_into(
     }
     draw(scene, camera, pixels);
     Ok(())
+}
+
+/// Draws a scene's targets over a picture of that camera, whatever was in front of them: exactly the
+/// pixels that are [red](super::is_red) in a picture of the scene alone.
+pub fn draw_red_over(image: &mut RgbImage, scene: &[Primitive], camera: &Pinhole) {
+    let pieces = cut_scene(scene, camera, None).pieces;
+    let windows = pieces.iter().map(|piece| piece.window);
+    let window = windows.reduce(|all, window| all.hull(&window));
+    let Some(window) = window.filter(|window| !window.is_empty()) else {
+        return;
+    };
+    let mut drawn = vec![[0; 3]; window.width() * window.height()];
+    Painter::new(scene, camera, Some(window)).paint(window.rows.0, &mut drawn);
+    let rows = image.chunks_exact_mut(3 * camera.width);
+    let rows = rows
+        .skip(window.rows.0)
+        .zip(drawn.chunks_exact(window.width()));
+    for (row, drawn) in rows {
+        let (pixels, _) = row[3 * window.columns.0..].as_chunks_mut::<3>();
+        for (pixel, red) in pixels.iter_mut().zip(drawn).filter(|(_, p)| is_red(**p)) {
+            *pixel = *red;
+        }
+    }
 }
 
 fn draw(scene: &[Primitive], camera: &Pinhole, pixels: &mut [u8]) {

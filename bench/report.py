@@ -1,0 +1,268 @@
+"""The docs' tables from bench/results.json: `python -m bench.report` writes them anew."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from bench.cases import BATCHES, CASES, LARGE_BATCHES, THREADS, batch_name
+from bench.process import ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+
+Results = dict[str, Any]
+PAGES = ("docs/benchmarks.md", "README.md")
+BLOCK = re.compile(r"(<!-- bench: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
+NOT_MEASURED = "–"
+
+
+@dataclass(frozen=True)
+class Mark:
+    """What a row, or several, is to reach."""
+
+    text: str
+    ours: tuple[str, ...]
+    """The rows, the worst of which counts."""
+    bound: float
+    unit: str
+    key: str = "cpu_us"
+    peer: str | None = None
+    """The row that ours is to be `bound` times cheaper than; without it ours is to be `bound` at
+    most."""
+    scale: float = 1.0
+    """From the row's unit to the mark's."""
+
+    def measured(self, rows: Mapping[str, Any]) -> float | None:
+        """What is compared with the bound; None if a row is missing."""
+        needed = (*self.ours, *([self.peer] if self.peer else []))
+        if not all(name in rows for name in needed):
+            return None
+        worst = max(rows[name][self.key] for name in self.ours)
+        found: float = rows[self.peer][self.key] / worst if self.peer else worst * self.scale
+        return found
+
+    def met(self, measured: float) -> bool:
+        """Whether that is enough."""
+        return measured >= self.bound if self.peer else measured <= self.bound
+
+
+def cheaper(text: str, ours: str, bound: float, peer: str) -> Mark:
+    """A mark beside a peer."""
+    return Mark(text, (ours,), bound, "×", peer=peer)
+
+
+MARKS = (
+    cheaper("reaching, 64, beside EnvPool `Reacher-v5`, 64", "reach-64-1t", 6, "envpool-reacher"),
+    cheaper("reaching, 64, beside `FetchReach-v4`", "reach-64-1t", 150, "fetchreach"),
+    cheaper("reaching, single, beside `Reacher-v5`, single", "reach", 3, "reacher"),
+    cheaper(
+        "object held, 64, beside EnvPool `HandReach-v3`, 64", "held-64-2t", 3, "envpool-handreach"
+    ),
+    cheaper("object held, 64, beside `myoHandReachRandom-v0`", "held-64-2t", 3, "myohandreach"),
+    *(
+        cheaper(
+            f"physics step, {degrees} degrees of freedom, {scene}, beside MuJoCo's",
+            f"physics-{scene}-{degrees}",
+            1,
+            f"mujoco-{scene}-{degrees}",
+        )
+        for degrees in (9, 18)
+        for scene in ("free", "held")
+    ),
+    cheaper("the same, as an aim", "physics-held-18", 2, "mujoco-held-18"),
+    Mark("the fovea's edges, in Rust", ("fovea-beside", "fovea-over"), 20, "µs", "clock_us"),
+    Mark("the eye's image, 630 × 630", ("eye-reach", "eye-grasp"), 0.4, "ms", scale=1e-3),
+    Mark(
+        "`rgb_array`, 480 × 480", ("third_person-reach", "third_person-grasp"), 3, "ms", scale=1e-3
+    ),
+    Mark("reset with a given case", ("reset-reach", "reset-grasp"), 60, "µs"),
+    Mark(
+        "memory of a reaching environment",
+        tuple(f"memory-reach-{n}" for n in LARGE_BATCHES),
+        8,
+        "KiB",
+        "kib",
+    ),
+    Mark(
+        "memory of a grasping environment",
+        tuple(f"memory-{state}-{n}" for state in ("grasp", "held") for n in LARGE_BATCHES),
+        256,
+        "KiB",
+        "kib",
+    ),
+)
+
+
+def number(value: float | None) -> str:
+    """Three digits."""
+    if value is None:
+        return NOT_MEASURED
+    if value >= 100:
+        return f"{value:,.0f}"
+    return f"{value:#.3g}".rstrip(".")
+
+
+def markdown(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table."""
+    lines = [heads, ["---"] * len(heads), *rows]
+    return "".join(f"| {' | '.join(cells)} |\n" for cells in lines)
+
+
+def marks(results: Results) -> str:
+    """What was aimed at, and what came out."""
+    rows = []
+    for mark in MARKS:
+        found = mark.measured(results["rows"])
+        sign = "≥" if mark.peer else "≤"
+        verdict = NOT_MEASURED if found is None else "met" if mark.met(found) else "**missed**"
+        measured = number(found) if found is None else f"{number(found)} {mark.unit}"
+        rows.append([mark.text, f"{sign} {mark.bound:g} {mark.unit}", measured, verdict])
+    return markdown(["", "mark", "measured", ""], rows)
+
+
+def machine(results: Results) -> str:
+    """What it was measured on."""
+    about = results["about"]
+    versions = about["versions"]
+    peers = ", ".join(
+        f"{package} {version}"
+        for venv in ("gym", "robotics", "envpool", "myo")
+        for package, version in versions[venv].items()
+        if (venv, package) != ("robotics", "gymnasium")
+    )
+    return (
+        f"{about['cpu']}, {about['cores']} cores, {about['system']}, {about['date']}, load "
+        f"{about['load_before']:.2f} before.\nMedians of {about['rounds']} rounds of "
+        f"{about['seconds']:g} s. Python {about['python']}, rustc {about['rustc']}; {peers}.\n"
+    )
+
+
+PEERS = (
+    "floor-64",
+    "floor",
+    "reach-64-1t",
+    "reach",
+    "envpool-reacher",
+    "reacher",
+    "fetchreach",
+    "grasp-64-2t",
+    "grasp",
+    "held-64-2t",
+    "held",
+    "envpool-handreach",
+    "handreach",
+    "myohandreach",
+)
+"""Rows of the table of peers, by task."""
+
+
+def peers(results: Results) -> str:
+    """Ours and theirs."""
+    rows = []
+    for name in PEERS:
+        case, row = CASES[name], results["rows"].get(name, {})
+        label = (
+            f"**{case.label}**" if name.startswith(("reach-", "grasp-", "held-")) else case.label
+        )
+        step = f"{case.step_ms:g} ms / {case.physics_steps}" if case.step_ms else NOT_MEASURED
+        clock = row.get("clock_us")
+        rate = NOT_MEASURED if clock is None else f"{float(f'{1e6 / clock:.3g}'):,.0f}"
+        rows.append([label, step, number(row.get("cpu_us")), rate])
+    return markdown(["environment", "simulated / physics steps", "CPU µs a step", "steps/s"], rows)
+
+
+def batches(results: Results) -> str:
+    """Cost against the number of environments and threads."""
+    heads = [
+        "environments",
+        *(f"{name}, {t} t" for name in ("reach", "grasp", "held") for t in THREADS),
+    ]
+    rows = []
+    for n in BATCHES:
+        cells = [
+            results["rows"].get(batch_name(name, n, threads), {})
+            for name in ("reach", "grasp", "held")
+            for threads in THREADS
+        ]
+        rows.append(
+            [
+                f"{n:,}",
+                *(f"{number(c.get('cpu_us'))} / {number(c.get('clock_us'))}" for c in cells),
+            ]
+        )
+    return markdown(heads, rows)
+
+
+def physics(results: Results) -> str:
+    """Ours, rapier's and MuJoCo's."""
+    rows = []
+    for degrees in (9, 18):
+        for scene in ("free", "held"):
+            ours, rapier, mujoco = (
+                results["rows"].get(f"{engine}-{scene}-{degrees}", {}).get("cpu_us")
+                for engine in ("physics", "rapier", "mujoco")
+            )
+            times = f"{number(mujoco / ours)} ×" if ours and mujoco else NOT_MEASURED
+            label = CASES[f"physics-{scene}-{degrees}"].label
+            rows.append([label, number(ours), number(rapier), number(mujoco), times])
+    heads = ["CPU µs a physics step", "ours", "rapier", "MuJoCo", "MuJoCo / ours"]
+    return markdown(heads, rows)
+
+
+OTHERS = re.compile("^(reset|edges|eye|fovea|third_person|memory)-")
+
+
+def others(results: Results) -> str:
+    """Resets, pictures and memory."""
+    rows = []
+    for name, case in CASES.items():
+        if not OTHERS.match(name):
+            continue
+        row = results["rows"].get(name, {})
+        if name.startswith("memory"):
+            rows.append(
+                [f"memory of an environment: {case.label}", f"{number(row.get('kib'))} KiB"]
+            )
+        else:
+            rows.append([case.label, f"{number(row.get('cpu_us', row.get('clock_us')))} µs"])
+    return markdown(["other", "measured"], rows)
+
+
+def speed(results: Results) -> str:
+    """The README's few rows."""
+    reaching = ("reach-64-1t", "envpool-reacher", "reach", "reacher", "fetchreach")
+    grasping = ("held-64-2t", "envpool-handreach", "myohandreach")
+    rows = [
+        [CASES[name].label, number(results["rows"].get(name, {}).get("cpu_us"))]
+        for name in (*reaching, *grasping)
+    ]
+    return markdown(["", "CPU µs a step"], rows)
+
+
+BLOCKS: dict[str, Callable[[Results], str]] = {
+    block.__name__: block for block in (marks, machine, peers, batches, physics, others, speed)
+}
+"""What stands between `<!-- bench: NAME -->` and `<!-- end -->` in the pages."""
+
+
+def filled(page: str, results: Results) -> str:
+    """The page with its blocks from the results."""
+    return BLOCK.sub(lambda found: found[1] + BLOCKS[found[2]](results) + found[3], page)
+
+
+def write(results: Results) -> None:
+    """Writes the blocks of all pages."""
+    for name in PAGES:
+        path = ROOT / name
+        path.write_text(filled(path.read_text(encoding="utf-8"), results), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    from bench import chart
+
+    stored = json.loads((ROOT / "bench" / "results.json").read_text(encoding="utf-8"))
+    write(stored)
+    chart.write(stored)

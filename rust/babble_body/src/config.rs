@@ -124,7 +124,8 @@ pub struct Contact {
 pub enum Engine {
     /// Made for this robot: a tree of joints about the vertical, in double precision.
     Tree,
-    /// rapier3d with settings of its own for contacts: the reference, some ten times slower.
+    /// rapier3d with settings of its own for contacts: the reference, some ten times slower. Its bits
+    /// are those of one platform's maths library.
     Rapier,
 }
 

@@ -49,7 +49,11 @@ def alarm_after(seconds):
 
 @contextmanager
 def ticking():
-    """A Python thread that notes the moments at which it runs."""
+    """A Python thread that notes the moments at which it runs.
+
+    No thread has to make way for another meanwhile: it runs where one lets go of Python's lock by
+    itself.
+    """
     moments, stop, begun = [], threading.Event(), threading.Event()
 
     def tick():
@@ -59,13 +63,25 @@ def ticking():
             time.sleep(0.001)
 
     thread = threading.Thread(target=tick)
-    thread.start()
-    begun.wait()
+    with switching_every(1_000):
+        thread.start()
+        begun.wait()
+        try:
+            yield moments
+        finally:
+            stop.set()
+            thread.join()
+
+
+@contextmanager
+def switching_every(seconds):
+    """How long a Python thread runs until it makes way for another that waits."""
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(seconds)
     try:
-        yield moments
+        yield
     finally:
-        stop.set()
-        thread.join()
+        sys.setswitchinterval(before)
 
 
 def reach_batch(n=2_000):
@@ -125,6 +141,28 @@ def test_long_calls_end_at_a_signal_and_let_other_threads_run(name, capsys):
     # With the interpreter's lock held none lies within the call.
     within = [moment for moment in moments if began + 0.002 < moment < ended - 0.002]
     assert len(within) >= 3
+
+
+@pytest.mark.parametrize(
+    ("task", "control", "lets"),
+    [
+        ("grasp", "delta_posture", True),
+        ("reach", "pattern", True),
+        # A microsecond: to let go of the lock and wait for it would take as long.
+        ("reach", "delta_posture", False),
+    ],
+)
+def test_other_threads_run_while_one_environment_steps(task, control, lets):
+    env = TASKS[task](control=control, reward="sparse")
+    env.reset(seed=0)
+    state, action = env.get_state(), np.zeros(env.action_space.shape, np.float32)
+    with ticking() as moments:
+        ticks, deadline = len(moments), time.monotonic() + (10 if lets else 0.2)
+        while len(moments) < ticks + 3 and time.monotonic() < deadline:
+            env._batch.load(0, state)
+            env._batch.step_one(action)
+        ticked = len(moments) - ticks
+    assert (ticked >= 3) if lets else (ticked == 0)
 
 
 @pytest.mark.parametrize("camera", ["third_person", "eye"])
@@ -297,17 +335,6 @@ def test_ctrl_c_is_heard_at_once(capsys):
     assert child.returncode == 0
 
 
-@contextmanager
-def restless():
-    """Python's threads take turns as often as can be."""
-    before = sys.getswitchinterval()
-    sys.setswitchinterval(1e-6)
-    try:
-        yield
-    finally:
-        sys.setswitchinterval(before)
-
-
 def hammer(call, enough, threads=2):
     """What a call gives in several threads at once until there was enough, and its errors."""
     given, busy = [], []
@@ -321,7 +348,7 @@ def hammer(call, enough, threads=2):
             except BusyError as error:  # noqa: PERF203 - it is what is counted
                 busy.append(error)
 
-    with restless(), ThreadPoolExecutor(threads) as pool:
+    with switching_every(1e-6), ThreadPoolExecutor(threads) as pool:
         for striking in [pool.submit(strike) for _ in range(threads)]:
             striking.result(timeout=60)
     assert enough(given, busy), (len(given), len(busy))
@@ -392,7 +419,7 @@ def test_threads_that_only_look_do_not_hinder_each_other():
     envs = reach_batch(64)
     senses = envs._batch.all()["senses"]
     wanted = agent.decide(senses)
-    with restless(), ThreadPoolExecutor(4) as threads:
+    with switching_every(1e-6), ThreadPoolExecutor(4) as threads:
         decided = [threads.submit(agent.decide, senses) for _ in range(50)]
         hashes = [threads.submit(envs.call, "state_hash") for _ in range(20)]
         assert all((decision.result() == wanted).all() for decision in decided)

@@ -137,7 +137,7 @@ fn nothing_held_is_an_error() {
     // short.
     let task = task_with(
         r#"{"body": {"grip": {"reflex_deg": [0, 0]}},
-            "grasp": {"palm_reach_m": 0.01, "control_period_s": 0.5, "physics_steps": 1}}"#,
+            "grasp": {"palm_reach_m": 0.01, "control_period_s": 0.02, "physics_steps": 1}}"#,
     );
     let result = GraspBabbling::new(0).experience(&task, 64, &mut pool(2));
     match result.map(|found| found.len()) {

@@ -345,8 +345,18 @@ impl Body {
     }
 }
 
+/// Speed of a joint beyond which simulation says nothing of it \[rad/s\].
+const FASTEST_RAD_S: f64 = 1e3;
+
 fn validate_muscles(name: &str, muscles: &Muscles) -> Result<(), BodyError> {
     within(&format!("{name}.kp"), muscles.kp, 1e-3, 1e6)?;
     within(&format!("{name}.kd"), muscles.kd, 1e-3, 1e6)?;
-    within(&format!("{name}.torque_max"), muscles.torque_max, 1e-3, 1e6)
+    // The speed that the torque keeps up is FASTEST_RAD_S at most.
+    let most = (FASTEST_RAD_S * muscles.kd).min(1e6);
+    within(
+        &format!("{name}.torque_max"),
+        muscles.torque_max,
+        1e-3,
+        most,
+    )
 }

@@ -185,6 +185,14 @@ impl Config {
             0.0,
             20.0,
         )?;
+        let muscles = &self.body.muscles;
+        let settle_s = reach.settle_time_constants * muscles.kd / muscles.kp;
+        within(
+            "reach.settle_time_constants K_D/K_P in seconds",
+            settle_s,
+            0.0,
+            120.0,
+        )?;
         within(
             "reach.delta_posture_deg",
             reach.delta_posture_deg,

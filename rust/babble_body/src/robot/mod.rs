@@ -32,6 +32,9 @@ pub use world::World;
 /// Earth's, downwards \[m/s²\]. It acts on the object alone: muscles compensate for it (Sect. II-B).
 const GRAVITY: f64 = 9.81;
 
+/// The most that a joint turns in a physics step \[rad\].
+const FASTEST_TURN: f64 = std::f64::consts::FRAC_PI_2;
+
 /// A sphere that can be grasped.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Ball {

@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 use crate::config::within;
 use crate::error::EnvError;
 
+/// Longest physics step \[s\]: in longer ones contacts tell nothing.
+const LONGEST_STEP_S: f64 = 0.02;
+
 /// Where objects lie and arms start.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -56,7 +59,8 @@ pub struct GraspNumbers {
     pub touch_max_n: f64,
     /// Time between two actions \[s\]; 0.05 \[C\].
     pub control_period_s: f64,
-    /// Physics steps in a control period; 10 \[C\], that is 5 ms each. At 10 ms grasps slip.
+    /// Physics steps in a control period; 10 \[C\], that is 5 ms each. At 10 ms grasps slip, and 20 ms
+    /// are the most that one may be.
     pub physics_steps: u32,
 }
 
@@ -152,7 +156,8 @@ impl GraspNumbers {
         ] {
             within(&format!("grasp.{field}"), value, low, high)?;
         }
-        Ok(())
+        let least = (self.control_period_s / LONGEST_STEP_S).ceil();
+        within("grasp.physics_steps", physics, least, 250.0)
     }
 }
 

@@ -21,11 +21,11 @@ use nalgebra::Vector3;
 
 use self::factor::{BALL, Matrix, SIZE, Sparsity};
 use self::mechanics::{Planar, Speeds};
-use super::GRAVITY;
 use super::kinematics::{MAX_JOINTS, Placed, place};
 use super::links::{Link, Solid};
 use super::muscles::Spring;
 use super::world::{MovingBall, World};
+use super::{FASTEST_TURN, GRAVITY};
 use crate::arm::rotate;
 use crate::config::{self, Body};
 
@@ -94,7 +94,8 @@ impl Tree {
         let speeds = Speeds::of(&self.links, &placed, &free[BALL..]);
         let contacts = self.contacts(world, &placed, &speeds, &free);
         let terms = self.terms(world, contacts);
-        let velocities = self.with_contacts(world, &placed, &equations, free, &terms);
+        let mut velocities = self.with_contacts(world, &placed, &equations, free, &terms);
+        self.limit(&mut velocities);
         term::note_contacts(world, &velocities, &terms);
         self.move_on(world, &velocities);
     }
@@ -159,6 +160,15 @@ impl Tree {
         self.sparsity.factor(&mut factors, &joints);
         self.sparsity.solve(&factors, &mut velocities, &joints);
         velocities
+    }
+
+    /// Keeps joints from turning further than a quarter turn in a step: beyond that, centrifugal forces
+    /// of its beginning say nothing of its end, and weak damping would let them grow without bound.
+    fn limit(&self, velocities: &mut Velocities) {
+        let most = FASTEST_TURN / self.dt;
+        for velocity in &mut velocities[self.sparsity.joints()] {
+            *velocity = velocity.clamp(-most, most);
+        }
     }
 
     fn move_on(&self, world: &mut World, velocities: &Velocities) {

@@ -124,6 +124,9 @@ impl Problem<'_> {
         for _ in 0..MAX_STEPS {
             self.factor();
             let (direction, gain) = self.direction();
+            if !is_downhill(gain) {
+                return;
+            }
             let share = self.search(&direction, gain);
             self.go(&direction, share);
             if gain <= enough {
@@ -132,7 +135,7 @@ impl Problem<'_> {
             // Near the least, curvature hardly changes: a step with the factors at hand is enough.
             self.slope();
             let (direction, gain) = self.direction();
-            if gain <= enough {
+            if gain <= enough && is_downhill(gain) {
                 self.go(&direction, 1.0);
                 return;
             }
@@ -231,6 +234,11 @@ impl Problem<'_> {
             points,
         }
     }
+}
+
+/// False where rounding left nothing of the curvature: links of a milligram, contacts of 10⁷ N/m.
+fn is_downhill(gain: f64) -> bool {
+    gain >= 0.0 && gain.is_finite()
 }
 
 /// A contact along a line.

@@ -36,6 +36,12 @@ pub enum BodyError {
         /// What does not fit, with the numbers.
         problem: String,
     },
+    /// A world that came from outside is none that a robot like this one can get into.
+    #[error("world: {problem}")]
+    World {
+        /// What is wrong with it.
+        problem: String,
+    },
     /// The eye's config or its reflex failed.
     #[error(transparent)]
     Eye(#[from] EyeError),

@@ -271,11 +271,11 @@ fn the_obstacle_stops_the_arm() {
 }
 
 /// Two worlds of one setup are the same, whatever was played in between, and so is a copy that is
-/// made in mid-contact, or one that went through bytes. Catches buffers that a reset leaves warm,
-/// and engine state that is not written.
+/// made in mid-contact, or one that went through bytes; in rapier too, whose state is made again from
+/// its past. Catches buffers that a reset leaves warm, and engine state that is not written.
 #[test]
 fn copies_continue_bit_for_bit() {
-    for robot in [robot(), independent()] {
+    for robot in [robot(), independent(), reference()] {
         let arm = [0.2, 0.8];
         let mut world = ball_at_palm(&robot, arm, 0.02);
         let drive = reflex(&robot, arm);

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 pub mod batch;
+mod check;
 mod choice;
 pub mod config;
 mod error;

@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::error::EnvError;
-use crate::task::{State, Task};
+use crate::task::{Episode, State, Task};
 
-const VERSION: u16 = 1;
+const VERSION: u16 = 2;
 
 #[derive(Serialize, Deserialize)]
 struct Header {
@@ -38,8 +38,8 @@ pub fn save<T: Task>(task: &T, state: &State<T>) -> Result<Vec<u8>, EnvError> {
 /// The state in `bytes`.
 ///
 /// # Errors
-/// [`EnvError::Snapshot`] for bytes that are cut short, altered, of another version, or of an
-/// environment with another config or other options.
+/// [`EnvError::Snapshot`] for bytes that are cut short, altered, of another version, of an environment
+/// with another config or other options, or a state that no episode can be in.
 pub fn load<T: Task>(task: &T, bytes: &[u8]) -> Result<State<T>, EnvError> {
     let (header, body): (Header, &[u8]) =
         postcard::take_from_bytes(bytes).map_err(|error| problem(&error))?;
@@ -61,13 +61,13 @@ pub fn load<T: Task>(task: &T, bytes: &[u8]) -> Result<State<T>, EnvError> {
     if header.body != xxh3_64(body) {
         return Err(refused("the bytes are cut short or altered"));
     }
-    let (state, rest): (State<T>, &[u8]) =
+    let (mut state, rest): (State<T>, &[u8]) =
         postcard::take_from_bytes(body).map_err(|error| problem(&error))?;
-    if rest.is_empty() {
-        Ok(state)
-    } else {
-        Err(refused("bytes are left over"))
+    if !rest.is_empty() {
+        return Err(refused("bytes are left over"));
     }
+    T::Episode::check(task, &mut state)?;
+    Ok(state)
 }
 
 /// A number that two states share only if they are the same to the bit.

@@ -39,6 +39,13 @@ impl Stream {
         Self(Pcg64::from_seed(bytes))
     }
 
+    /// Whether it goes on, as all that are made here do; one that somebody else wrote may stand still.
+    pub(crate) fn moves(&self) -> bool {
+        let mut next = self.clone();
+        next.uniform(0.0, 1.0);
+        next != *self
+    }
+
     /// Uniform in [low, high).
     pub fn uniform(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.0.random::<f64>()

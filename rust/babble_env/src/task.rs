@@ -75,6 +75,13 @@ pub trait Episode: Send + Sync {
     /// An episode that has to be reset before it can step.
     fn new(task: &Self::Task, stream: Stream) -> Self;
 
+    /// Checks a state that somebody else wrote, and makes again what was not written of it: then no
+    /// number that it holds makes a step, an observation or a picture panic or hang.
+    ///
+    /// # Errors
+    /// [`EnvError::Snapshot`] naming what no state of this task can be.
+    fn check(task: &Self::Task, state: &mut Self::State) -> Result<(), EnvError>;
+
     /// An episode that continues from `state`.
     fn from_state(task: &Self::Task, state: Self::State) -> Self;
 

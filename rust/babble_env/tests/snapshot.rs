@@ -2,8 +2,10 @@
 
 mod playing;
 
-use babble_env::{Autoreset, Batch, Config, Control, EnvError, Options, ReachTask};
-use playing::{Actions, batch, bits, control, goal};
+use std::sync::Arc;
+
+use babble_env::{Autoreset, Batch, Config, Control, EnvError, Options, ReachTask, Reward};
+use playing::{Actions, bits, control, goal, seeded, task};
 use proptest::prelude::*;
 
 fn options(of: Control) -> Options {
@@ -14,7 +16,11 @@ fn options(of: Control) -> Options {
 }
 
 fn played(options: Options, steps: usize) -> (Batch<ReachTask>, Actions) {
-    let mut env = batch(options, 1, Autoreset::NextStep, 1, 8);
+    played_by(task(options), steps)
+}
+
+fn played_by(task: Arc<ReachTask>, steps: usize) -> (Batch<ReachTask>, Actions) {
+    let mut env = seeded(task, 1, Autoreset::NextStep, 1, 8);
     let mut actions = Actions::new(1);
     for _ in 0..steps {
         env.step(&actions.draw()).unwrap();
@@ -22,18 +28,37 @@ fn played(options: Options, steps: usize) -> (Batch<ReachTask>, Actions) {
     (env, actions)
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+/// Any choice of options, on any body; episodes are short, so that many end.
+fn any_task() -> impl Strategy<Value = Arc<ReachTask>> {
+    let controls = proptest::sample::select(Control::ALL);
+    let rewards = proptest::sample::select(Reward::ALL);
+    let body = proptest::sample::select(&["paper", "icub"]);
+    (controls, rewards, any::<[bool; 3]>(), body).prop_map(
+        |(control, reward, [goal, settled, record], body)| {
+            let options = Options {
+                reward: if goal { Reward::Sparse } else { reward },
+                goal,
+                settled: settled && !goal,
+                record,
+                ..options(control)
+            };
+            Arc::new(ReachTask::new(Config::profile(body).unwrap(), options).unwrap())
+        },
+    )
+}
 
-    /// Saved at any moment (first step, end of an episode, later ones), loaded into an environment
-    /// that played something else: what follows is the same to the bit. Catches a field that is not
-    /// saved: the stream, the equilibrium point, the speeds, what was asked of the cases.
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(120))]
+
+    /// Saved at any moment (first step, end of an episode, later ones) with any choice of options and
+    /// body, loaded into an environment that played something else: what follows is the same to the
+    /// bit. Catches a field that is not saved: the stream, the equilibrium point, the speeds, what was
+    /// asked of the cases; and a check that refuses what some options lead to.
     #[test]
-    fn continues_bit_for_bit(of in 0..Control::ALL.len(), before in 0_usize..70, after in 1_usize..70) {
-        let of = Control::ALL[of];
-        let (mut env, mut actions) = played(options(of), before);
+    fn continues_bit_for_bit(task in any_task(), before in 0_usize..70, after in 1_usize..70) {
+        let (mut env, mut actions) = played_by(task.clone(), before);
         let bytes = env.save(0).unwrap();
-        let mut other = batch(options(of), 1, Autoreset::NextStep, 1, 999);
+        let mut other = seeded(task, 1, Autoreset::NextStep, 1, 999);
         other.step(&[0.3, 0.3]).unwrap();
         other.load(0, &bytes).unwrap();
         prop_assert_eq!(other.save(0).unwrap(), bytes);
@@ -112,13 +137,7 @@ fn foreign_snapshots_are_refused() {
 /// An environment that was never reset has a snapshot too, and still needs a reset after it.
 #[test]
 fn fresh_environments_stay_fresh() {
-    let mut env = Batch::new(
-        playing::task(options(Control::Torque)),
-        1,
-        Autoreset::NextStep,
-        1,
-    )
-    .unwrap();
+    let mut env = Batch::new(task(options(Control::Torque)), 1, Autoreset::NextStep, 1).unwrap();
     let bytes = env.save(0).unwrap();
     env.load(0, &bytes).unwrap();
     assert_eq!(env.step(&[0.0; 2]), Err(EnvError::NeedsReset { env: 0 }));

@@ -60,6 +60,12 @@ impl Eye {
         &self.config
     }
 
+    /// Lowest and highest pan, and tilt \[rad\].
+    #[must_use]
+    pub const fn ranges(&self) -> [[f64; 2]; 2] {
+        [self.pan, self.tilt]
+    }
+
     /// The eye's image at a gaze.
     #[must_use]
     pub fn camera(&self, gaze: Gaze) -> Pinhole {

@@ -4,6 +4,7 @@
 //! [`Robot`] never changes; [`World`] is all that does. Two engines step a world: `tree`, which is
 //! made for this robot, and `rapier`, a general one, its reference.
 
+mod check;
 mod clearance;
 mod description;
 mod kinematics;
@@ -24,7 +25,6 @@ use kinematics::{MAX_JOINTS, place};
 use links::{FOREARM, Link};
 pub use links::{Part, Solid};
 pub use muscles::{Drive, Posture, Pull, towards};
-use touch::SLOTS;
 pub use touch::Touch;
 use world::MovingBall;
 pub use world::World;
@@ -146,17 +146,10 @@ impl Robot {
             *q = setup.posture[link.muscle.index()];
         }
         let [x, y] = setup.ball.centre;
-        World {
-            q,
-            v: [0.0; MAX_JOINTS],
-            ball: MovingBall::at_rest(Vector3::new(x, y, 0.0), setup.ball.radius),
-            support: setup.support,
-            obstacle: setup.obstacle,
-            impulses: [0.0; SLOTS],
-            hit: false,
-            depth: 0.0,
-            rapier: None,
-        }
+        let ball = MovingBall::at_rest(Vector3::new(x, y, 0.0), setup.ball.radius);
+        let mut world = World::at_rest(q, ball, setup.obstacle);
+        world.support = setup.support;
+        world
     }
 
     /// A world with every joint at its angle, in the order of [`Self::joint_angles`] \[rad\], and the
@@ -185,8 +178,27 @@ impl Robot {
             std::array::from_fn(|i| self.spring(drive, i.min(self.links.len() - 1), world.q[i]));
         match &self.stepper {
             Stepper::Tree(tree) => tree.step(world, &springs),
-            Stepper::Rapier(rapier) => rapier.step(world, &springs[..self.links.len()]),
+            Stepper::Rapier(rapier) => {
+                if let Some(memory) = world.rapier.take_if(|memory| memory.is_bare()) {
+                    let again = self.replay(&memory.past, world.ball.radius, world.obstacle);
+                    world.rapier = again.rapier;
+                }
+                rapier.step(world, drive, &springs[..self.links.len()]);
+            }
         }
+    }
+
+    /// The world that a past of rapier's leads to.
+    fn replay(&self, past: &rapier::Past, radius: f64, obstacle: Option<Obstacle>) -> World {
+        let ball = MovingBall::at_rest(past.centre, radius);
+        let mut world = World::at_rest(past.q, ball, obstacle);
+        for spell in &past.spells {
+            world.support = spell.support;
+            for _ in 0..spell.steps {
+                self.step(&mut world, &spell.drive);
+            }
+        }
+        world
     }
 
     /// Takes the support away for good.

@@ -1,5 +1,7 @@
 //! What moves the joints.
 
+use serde::{Deserialize, Serialize};
+
 use super::Robot;
 
 /// Angles of shoulder, elbow, thumb and virtual finger \[rad\]: of the arm's joints, and flexions of
@@ -7,7 +9,7 @@ use super::Robot;
 pub type Posture = [f64; 4];
 
 /// What moves a joint, or every joint of a digit.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Pull {
     /// Muscles with this equilibrium point \[rad\], Eq. 2.
     EquilibriumPoint(f64),

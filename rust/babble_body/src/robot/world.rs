@@ -27,11 +27,32 @@ pub struct World {
     /// How deep the object was in arm and hand at its start \[m\].
     pub(super) depth: f64,
     /// What rapier remembers, if it is the engine.
-    pub(super) rapier: Option<Box<rapier::State>>,
+    pub(super) rapier: Option<Box<rapier::Memory>>,
+}
+
+impl World {
+    /// A world in which nothing moves, without a support.
+    pub(super) fn at_rest(
+        q: [f64; MAX_JOINTS],
+        ball: MovingBall,
+        obstacle: Option<Obstacle>,
+    ) -> Self {
+        Self {
+            q,
+            v: [0.0; MAX_JOINTS],
+            ball,
+            support: false,
+            obstacle,
+            impulses: [0.0; SLOTS],
+            hit: false,
+            depth: 0.0,
+            rapier: None,
+        }
+    }
 }
 
 /// A sphere in motion. How it is turned makes no difference.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct MovingBall {
     /// \[m\]
     pub(super) radius: f64,

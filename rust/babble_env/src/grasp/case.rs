@@ -104,7 +104,7 @@ impl GraspRequest {
     }
 
     /// Checks what is given by itself.
-    fn check(&self, task: &GraspTask) -> Result<(), EnvError> {
+    pub(super) fn check(&self, task: &GraspTask) -> Result<(), EnvError> {
         if let Some(start) = self.start {
             check_start(task, start)?;
         }

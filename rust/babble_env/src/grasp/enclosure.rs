@@ -6,6 +6,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::numbers::GraspNumbers;
+use crate::check::ensure;
+use crate::error::EnvError;
 
 /// How far a grasp has come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -95,6 +97,28 @@ impl Enclosure {
     pub fn share(&self, numbers: &GraspNumbers) -> f64 {
         let both = self.sum(|contacts| contacts.fingers) + self.sum(|contacts| contacts.opposite);
         both / f64::from(2 * numbers.hold_steps * numbers.physics_steps)
+    }
+
+    /// Checks what somebody else wrote of an episode of so many control steps.
+    pub(super) fn check(&self, numbers: &GraspNumbers, steps: u32) -> Result<(), EnvError> {
+        let most = numbers.hold_steps.min(steps) as usize;
+        let seen = self.recent.len();
+        ensure(seen <= most, || {
+            format!("{seen} control steps of contacts, not at most {most}")
+        })?;
+        let counted = |contacts: &Contacts| {
+            let all = [contacts.enclosing, contacts.fingers, contacts.opposite];
+            all.iter().all(|&n| u32::from(n) <= numbers.physics_steps)
+        };
+        ensure(self.recent.iter().all(counted), || {
+            format!("more contacts than {} physics steps", numbers.physics_steps)
+        })?;
+        let whole = numbers.hold_steps * numbers.physics_steps;
+        ensure(self.missed <= whole, || {
+            format!("{} contacts missed of {whole}", self.missed)
+        })?;
+        let held = matches!(self.grip, Grip::Tried(steps) if steps >= numbers.hold_steps);
+        ensure(!held, || "a grasp is held, and tried still".to_owned())
     }
 
     fn sum(&self, of: impl Fn(&Contacts) -> u8) -> f64 {

@@ -5,6 +5,7 @@ use babble_body::robot::{Ball, Drive, Posture, Pull, Setup, Touch, World, toward
 use serde::{Deserialize, Serialize};
 
 use super::case::{GraspCase, GraspRequest};
+use super::check;
 use super::enclosure::{Contacts, Enclosure, Grip};
 use super::sight::{self, FOVEA_NEURONS};
 use super::task::GraspTask;
@@ -142,6 +143,10 @@ impl Episode for Grasp {
         Self::from_state(task, state)
     }
 
+    fn check(task: &GraspTask, state: &mut GraspState) -> Result<(), EnvError> {
+        check::check(task, state)
+    }
+
     fn from_state(task: &GraspTask, state: GraspState) -> Self {
         let mut episode = Self {
             state,
@@ -254,21 +259,25 @@ impl Episode for Grasp {
     }
 }
 
-/// The state at the beginning of an episode; the eye has not turned yet.
-fn fresh(task: &GraspTask, case: GraspCase, request: GraspRequest, stream: Stream) -> GraspState {
-    let posture = task.robot.open_hand(case.start);
-    let world = task.robot.world(&Setup {
-        posture,
+/// How the world of a case begins.
+pub(super) fn setup(task: &GraspTask, case: &GraspCase) -> Setup {
+    Setup {
+        posture: task.robot.open_hand(case.start),
         ball: Ball {
             centre: case.object,
             radius: case.radius(),
         },
         support: true,
         obstacle: case.obstacle,
-    });
+    }
+}
+
+/// The state at the beginning of an episode; the eye has not turned yet.
+fn fresh(task: &GraspTask, case: GraspCase, request: GraspRequest, stream: Stream) -> GraspState {
+    let begin = setup(task, &case);
     let mut state = GraspState {
-        world,
-        equilibrium: posture,
+        world: task.robot.world(&begin),
+        equilibrium: begin.posture,
         case,
         gaze: task.eye.rest(),
         touch: [0.0; 3],

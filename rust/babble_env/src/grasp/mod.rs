@@ -1,6 +1,7 @@
 //! Grasping an object (Sect. IV).
 
 pub mod case;
+mod check;
 mod enclosure;
 mod episode;
 mod in_hand;

@@ -12,7 +12,7 @@ use crate::outcome::Outcome;
 use crate::spec::{Entry, Spec};
 
 /// How an episode of grasping can stand or end.
-const OUTCOMES: [Outcome; 5] = [
+pub(super) const OUTCOMES: [Outcome; 5] = [
     Outcome::Running,
     Outcome::Success,
     Outcome::Collision,

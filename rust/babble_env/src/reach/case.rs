@@ -13,6 +13,8 @@ use crate::stream::Stream;
 const MAX_TRIES: u32 = 100_000;
 /// The same for cases around an obstacle that a user placed, each of which is legal by itself.
 const MAX_TRIES_AROUND: u32 = 1_000;
+/// Greatest coordinate of an obstacle that a user places \[m\].
+const FAR_M: f64 = 10.0;
 
 /// One case of the reaching task.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -149,13 +151,14 @@ fn posture_for(
 
 /// Checks an obstacle that a user placed.
 pub(crate) fn check_obstacle(obstacle: &Obstacle) -> Result<(), EnvError> {
-    if obstacle.centre.iter().all(|x| x.is_finite()) && (1e-4..=1.0).contains(&obstacle.radius) {
+    let near = obstacle.centre.iter().all(|x| x.abs() <= FAR_M);
+    if near && (1e-4..=1.0).contains(&obstacle.radius) {
         return Ok(());
     }
     Err(EnvError::Case {
         what: "obstacle",
         problem: format!(
-            "centre {:?} m and radius {} m must be finite and the radius in [0.0001, 1]",
+            "centre {:?} m must be within ±{FAR_M} m, and radius {} m in [0.0001, 1]",
             obstacle.centre.as_slice(),
             obstacle.radius
         ),
@@ -197,6 +200,19 @@ pub enum ObstacleRequest {
 }
 
 impl CaseRequest {
+    /// Checks what is given by itself.
+    pub(super) fn check(&self, task: &ReachTask) -> Result<(), EnvError> {
+        for (what, point) in [("start", self.start), ("target", self.target)] {
+            if let Some(point) = point {
+                posture_for(task, what, point)?;
+            }
+        }
+        match &self.obstacle {
+            ObstacleRequest::At(obstacle) => check_obstacle(obstacle),
+            ObstacleRequest::Halfway | ObstacleRequest::Absent => Ok(()),
+        }
+    }
+
     /// The next case that fulfils the request.
     ///
     /// # Errors

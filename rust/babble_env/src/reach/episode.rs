@@ -5,6 +5,7 @@ use babble_body::{ArmState, Obstacle};
 use serde::{Deserialize, Serialize};
 
 use super::case::{CaseRequest, ReachCase};
+use super::check;
 use super::movement::{Fidelity, MovementPath};
 use super::task::ReachTask;
 use crate::config::Config;
@@ -109,10 +110,7 @@ impl Episode for Reach {
             target: hand.into(),
             obstacle: None,
         };
-        let gaze = Gaze {
-            pan: 0.0,
-            tilt: 0.0,
-        };
+        let gaze = task.eye.rest();
         let state = ReachState {
             arm: ArmState::at_rest(start),
             equilibrium: start,
@@ -133,6 +131,10 @@ impl Episode for Reach {
             state,
             asked: None,
         }
+    }
+
+    fn check(task: &ReachTask, state: &mut ReachState) -> Result<(), EnvError> {
+        check::check(task, state)
     }
 
     fn from_state(task: &ReachTask, state: ReachState) -> Self {

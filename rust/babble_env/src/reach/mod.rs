@@ -1,6 +1,7 @@
 //! Reaching a target around an obstacle (Sect. III).
 
 pub mod case;
+mod check;
 mod episode;
 pub mod movement;
 mod options;

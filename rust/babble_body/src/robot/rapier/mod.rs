@@ -2,16 +2,17 @@
 //! robot.
 
 mod build;
+mod memory;
 mod seam;
 
 use std::fmt;
 
 use rapier3d::prelude::*;
-use serde::{Deserialize, Serialize};
 
+pub(in crate::robot) use self::memory::{Memory, Past};
 use self::seam::{from_vector, vector};
 use super::GRAVITY;
-use super::muscles::Spring;
+use super::muscles::{Drive, Spring};
 use super::touch::{SLOTS, SOLIDS};
 use super::world::World;
 
@@ -21,8 +22,8 @@ const FREE_AXIS: usize = 3;
 const OBJECT: usize = SLOTS;
 
 /// Everything that the engine carries from one step to the next.
-#[derive(Clone, Default, Serialize, Deserialize)]
-pub(in crate::robot) struct State {
+#[derive(Clone, Default)]
+struct State {
     islands: IslandManager,
     broad_phase: DefaultBroadPhase,
     narrow_phase: NarrowPhase,
@@ -31,7 +32,6 @@ pub(in crate::robot) struct State {
     impulse_joints: ImpulseJointSet,
     multibody_joints: MultibodyJointSet,
     soft_bodies: SoftBodySet,
-    #[serde(skip)]
     workspace: Workspace,
 }
 
@@ -92,20 +92,23 @@ pub(super) struct Rapier {
 }
 
 impl Rapier {
-    /// One physics step. The engine's own state is made from the world's at the first one.
-    pub(super) fn step(&self, world: &mut World, springs: &[Spring]) {
-        let mut state = world
+    /// One physics step with the springs that `drive` is. The engine's own state is made from the
+    /// world's at the first one.
+    pub(super) fn step(&self, world: &mut World, drive: &Drive, springs: &[Spring]) {
+        let mut memory = world
             .rapier
             .take()
-            .unwrap_or_else(|| Box::new(self.begin(world)));
+            .unwrap_or_else(|| Box::new(Memory::of(world)));
+        memory.past.add(drive, world.support);
+        let state = memory.state.get_or_insert_with(|| self.begin(world));
         if state.colliders[self.support].is_enabled() != world.support {
             state.colliders[self.support].set_enabled(world.support);
         }
-        self.drive(&mut state, &world.q, springs);
+        self.drive(state, &world.q, springs);
         state.step(Vector::new(0.0, 0.0, -GRAVITY as f32), &self.parameters);
-        self.read_motion(&state, world);
-        self.read_contacts(&state, world);
-        world.rapier = Some(state);
+        self.read_motion(state, world);
+        self.read_contacts(state, world);
+        world.rapier = Some(memory);
     }
 
     fn begin(&self, world: &World) -> State {

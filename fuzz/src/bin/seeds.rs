@@ -1,0 +1,128 @@
+//! Writes the inputs that fuzzing begins with into `corpus`, for use after a format has changed:
+//! `cargo run --bin seeds`.
+
+use std::error::Error;
+use std::path::Path;
+use std::sync::Arc;
+
+use babble_agent::grasp::{GraspBabbling, GraspHebb, GraspHebbConfig, Metadata};
+use babble_agent::{HebbConfig, Variant, store};
+use babble_env::grasp::GraspRequest;
+use babble_env::reach::movement::Fidelity;
+use babble_env::{Autoreset, Batch, Config, EnvError, Task};
+use babble_fuzz::snapshots::{body_of, grasping, reaching};
+use safetensors::SafeTensors;
+
+type Result<T> = std::result::Result<T, Box<dyn Error>>;
+
+fn main() -> Result<()> {
+    // Each control, the goal form, recording, the other body.
+    for (choice, steps) in [(0, 0), (1, 3), (2, 6), (3, 1), (12, 5), (24, 4)] {
+        let env = begun(reaching(choice), None)?;
+        write("reach_snapshot", choice, &played(env, steps, 0.3)?)?;
+    }
+    // Each control, the goal form, recording, the reflex, rapier; in contact.
+    for (choice, steps) in [
+        (0, 0),
+        (16, 12),
+        (17, 8),
+        (2, 6),
+        (12, 4),
+        (48, 10),
+        (34, 3),
+    ] {
+        let task = grasping(choice);
+        let start = [0.2, 0.8];
+        let near = GraspRequest {
+            start: Some(start),
+            object: Some(task.before_palm(start, 0.02, 0.006)),
+            diameter: Some(0.04),
+            ..GraspRequest::default()
+        };
+        let env = begun(task, (steps > 0).then_some(near))?;
+        write("grasp_snapshot", choice, &played(env, steps, 0.2)?)?;
+    }
+    for name in ["paper", "icub"] {
+        let value: serde_json::Value = serde_json::from_str(&Config::profile(name)?.to_json()?)?;
+        let text = if name == "paper" {
+            toml::to_string(&value)?
+        } else {
+            value.to_string()
+        };
+        put("config", name, text.as_bytes())?;
+    }
+    let small = "profile = \"icub\"\n[body.arm]\nhalf_width_m = 0.012\n[body.joints.elbow]\nupper_deg = 99\n";
+    put("config", "overrides", small.as_bytes())?;
+    agents()
+}
+
+fn begun<T: Task>(task: T, request: Option<babble_env::task::Request<T>>) -> Result<Batch<T>> {
+    let mut env = Batch::new(Arc::new(task), 1, Autoreset::Disabled, 1)?;
+    env.seed(0, 1)?;
+    if let Some(request) = request {
+        env.request(0, request)?;
+    }
+    env.reset(&[true])?;
+    Ok(env)
+}
+
+fn played<T: Task>(mut env: Batch<T>, steps: usize, action: f32) -> Result<Vec<u8>> {
+    for _ in 0..steps {
+        match env.step(&vec![action; env.task().action_len()]) {
+            Err(EnvError::NeedsReset { .. }) => break,
+            result => result?,
+        }
+    }
+    Ok(env.save(0)?)
+}
+
+fn agents() -> Result<()> {
+    for variant in [Variant::Paper, Variant::Conjunctive] {
+        let config = HebbConfig {
+            output_neurons: 2,
+            obstacle_neurons: 2,
+            target_neurons: 2,
+            ..HebbConfig::variant(variant)
+        };
+        let body = Config::profile("paper")?;
+        let metadata = store::Metadata::new(config, body, 1, Fidelity::Full, 9, 2);
+        let json = serde_json::to_string(&metadata)?;
+        put("agent_file", &variant.to_string(), &with_numbers(&json))?;
+    }
+    let config = GraspHebbConfig {
+        neurons: 2,
+        ..GraspHebbConfig::default()
+    };
+    let hebb = GraspHebb::new(config)?;
+    let file = babble_agent::grasp::save(&hebb, &GraspBabbling::new(1), Config::profile("icub")?)?;
+    let (_, header) = SafeTensors::read_metadata(&file)?;
+    let text = header
+        .metadata()
+        .as_ref()
+        .and_then(|all| all.get("gym_babble.grasp"));
+    let (_, fields) = text
+        .ok_or("no metadata")?
+        .split_once(',')
+        .ok_or("no fields")?;
+    let json = format!("{{{fields}");
+    serde_json::from_str::<Metadata>(&json)?;
+    put("agent_file", "grasp", &with_numbers(&json))
+}
+
+/// Two neurons a side, no tensor too long, all weights 0.
+fn with_numbers(json: &str) -> Vec<u8> {
+    [&[0; 10], json.as_bytes()].concat()
+}
+
+fn write(target: &str, choice: u8, snapshot: &[u8]) -> Result<()> {
+    let input = [&[choice], body_of(snapshot)].concat();
+    put(target, &format!("options_{choice}"), &input)
+}
+
+fn put(target: &str, name: &str, input: &[u8]) -> Result<()> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("corpus")
+        .join(target);
+    std::fs::create_dir_all(&folder)?;
+    Ok(std::fs::write(folder.join(name), input)?)
+}

@@ -118,6 +118,16 @@ def test_the_scan_sees_code_and_not_prose(source, libraries):
     assert libraries_named(source) == libraries
 
 
+def test_each_crate_that_simulates_turns_on_the_lints_of_clippy_toml(repository):
+    # Not the bindings, which compute nothing.
+    for crate in MAY_KNOW.keys() - {"babble_py"}:
+        source = (repository / "rust" / crate / "src/lib.rs").read_text(encoding="utf-8")
+        assert "#![warn(clippy::disallowed_methods, clippy::disallowed_types)]" in source, crate
+    kept_out = (repository / "clippy.toml").read_text(encoding="utf-8")
+    for name in ("f64::sin", "f32::exp", "f64::mul_add", "ParallelIterator::sum", "HashMap"):
+        assert name in kept_out
+
+
 def test_import_loads_nothing_heavy(capsys):
     program = "import sys, gym_babble; print(*{name.partition('.')[0] for name in sys.modules})"
     started = time.perf_counter()

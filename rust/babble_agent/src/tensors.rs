@@ -1,8 +1,6 @@
 //! Named tensors and JSON in a safetensors file. The JSON stands in the header's metadata and begins
 //! with a checksum of all the rest. Nothing in such a file is code.
 
-use std::collections::HashMap;
-
 use babble_brain::Association;
 use safetensors::tensor::{Dtype, TensorView};
 use safetensors::{SafeTensors, serialize};
@@ -59,7 +57,12 @@ pub(crate) fn write(
     }
     let json = serde_json::to_string(metadata).map_err(|e| file(&e))?;
     let text = with_checksum(&json, &data);
-    serialize(views, Some(HashMap::from([(key.to_owned(), text)]))).map_err(|e| file(&e))
+    #[expect(
+        clippy::disallowed_types,
+        reason = "of one entry, as safetensors takes it"
+    )]
+    let metadata = std::collections::HashMap::from([(key.to_owned(), text)]);
+    serialize(views, Some(metadata)).map_err(|e| file(&e))
 }
 
 /// The JSON and the tensors of that `names` in a file's bytes.

@@ -48,7 +48,8 @@ pub struct Muscles {
     pub kp: f64,
     /// Damping `K_D` \[N·m·s/rad\]; 40 \[P\]. The arm's time constant is `kd / kp` seconds.
     pub kd: f64,
-    /// Torque of an action of 1 in torque control \[N·m\]; 50 \[C\].
+    /// Torque of an action of 1 in torque control \[N·m\]; 50 \[C\]. At most 1000 `kd`, which is a speed of
+    /// 1000 rad/s.
     pub torque_max: f64,
 }
 

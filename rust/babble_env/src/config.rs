@@ -30,7 +30,7 @@ pub struct ReachNumbers {
     /// Movement time T of the pattern generators \[s\]; 8 \[C\]. Shorter movements lose their
     /// curvature to the muscles' lag.
     pub movement_s: f64,
-    /// Time to settle after T, in muscle time constants `K_D/K_P`; 4 \[C\].
+    /// Time to settle after T, in muscle time constants `K_D/K_P`; 4 \[C\]. 120 s at most.
     pub settle_time_constants: f64,
     /// Change of the equilibrium point by an action of 1 in `delta_posture` control \[deg\]; 5 \[C\].
     pub delta_posture_deg: f64,

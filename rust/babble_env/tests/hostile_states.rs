@@ -174,13 +174,13 @@ fn nonsense_of_grasping_is_refused() {
 /// A state of rapier in a world that the tree engine steps, and the other way round.
 #[test]
 fn worlds_of_another_engine_are_refused() {
-    let rapier = in_contact("rapier").state(0).unwrap().clone();
-    let tree = in_contact("tree").state(0).unwrap().clone();
+    let general = in_contact("rapier").state(0).unwrap().clone();
+    let special = in_contact("tree").state(0).unwrap().clone();
     refused(&mut in_contact("tree"), "rapier", |s| {
-        s.world = rapier.world;
+        s.world = general.world;
     });
     refused(&mut in_contact("rapier"), "past", |s| {
-        s.world = tree.world;
+        s.world = special.world;
     });
 }
 

@@ -293,7 +293,7 @@ pub(super) fn cut_scene<'a>(
     if let Some(view) = view {
         cutter.look_at(view);
     }
-    cutter.pieces.reserve(scene.len());
+    cutter.pieces.reserve(3 * scene.len());
     for (index, primitive) in scene.iter().enumerate() {
         cutter.cut(index, &primitive.shape);
     }

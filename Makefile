@@ -25,10 +25,10 @@ EXTENSION_SOURCES := Cargo.toml Cargo.lock $(shell find rust -type f -not -name 
 	$(foreach folder,$(NOT_IN_EXTENSION),-not -path '*/$(folder)/*'))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint lint-rust lint-python lint-workflows deny bench microbench rllib constraints audit-export clean
+.PHONY: help setup demo test lint lint-rust lint-python lint-workflows golden-native deny bench microbench rllib constraints audit-export clean
 
 help: ## List the targets
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 setup: $(STAMPS)/extension ## Install everything into .venv and build the extension (the others call it)
 
@@ -39,6 +39,10 @@ demo: setup ## Compare the agents on both tasks and write figures and tables int
 test: setup ## Run the Rust and the Python tests
 	cargo test
 	$(BIN)/python -m pytest
+
+# In a folder of its own, as other flags build all crates anew.
+golden-native: ## Compare the golden trajectories in a release build for this very processor
+	RUSTFLAGS='-C target-cpu=native' cargo test --release -p babble_env --test golden --target-dir target/native
 
 lint: lint-rust lint-python lint-workflows deny ## Check formatting, lints and types of both languages, and what they depend on
 

@@ -38,17 +38,22 @@ fn all<T>(of: impl Fn(u8) -> T) -> Vec<Arc<T>> {
     (0..CHOICES).map(|choice| Arc::new(of(choice))).collect()
 }
 
+/// The goal form has one reward alone.
+fn reward(goal: bool) -> Reward {
+    if goal {
+        Reward::Sparse
+    } else {
+        Reward::Progress
+    }
+}
+
 /// The task of reaching that a byte stands for.
 pub fn reaching(choice: u8) -> ReachTask {
     let goal = choice & 4 != 0;
     let options = Options {
         control: CONTROLS[usize::from(choice % 4)],
         goal,
-        reward: if goal {
-            Reward::Sparse
-        } else {
-            Reward::Progress
-        },
+        reward: reward(goal),
         max_episode_steps: 20,
         record: choice & 8 != 0,
         ..Options::default()
@@ -63,11 +68,7 @@ pub fn grasping(choice: u8) -> GraspTask {
     let options = GraspOptions {
         control: CONTROLS[usize::from(choice % 3)],
         goal,
-        reward: if goal {
-            Reward::Sparse
-        } else {
-            Reward::Progress
-        },
+        reward: reward(goal),
         max_episode_steps: 20,
         record: choice & 8 != 0,
         enclosure_reflex: choice & 16 != 0,

@@ -85,10 +85,11 @@ fn any_task() -> impl Strategy<Value = Arc<GraspTask>> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
-    /// Saved at any moment with any choice of options, body, hand and engine (before, in and after the grasp, with the support or without, at the end
-    /// of an episode or in a later one), loaded into an environment that played something else: what
-    /// follows is the same to the bit. Catches what the physics engine keeps between steps and does
-    /// not write, and counts of the grasp that are not saved.
+    /// Saved at any moment (before, in and after the grasp, with the support or without, at the end of
+    /// an episode or in a later one) with any choice of options, body, hand and engine, loaded into an
+    /// environment that played something else: what follows is the same to the bit. Catches what the
+    /// physics engine keeps between steps and does not write, and counts of the grasp that are not
+    /// saved.
     #[test]
     fn continues_bit_for_bit(task in any_task(), seed in 0_u64..4, before in 0_usize..120, after in 1_usize..40) {
         let (mut env, mut actions) = played_by(task.clone(), seed, before);

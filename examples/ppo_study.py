@@ -9,7 +9,8 @@ python examples/ppo_study.py --out docs/studies --long 3     # and 4 or 3 times 
 
 What `gym-babble compare --task grasp` shows without training comes from
 
-python examples/ppo_study.py --task grasp --seeds 3 --out gym_babble/studies --pictures docs/studies
+python examples/ppo_study.py --task grasp --seeds 3 --out gym_babble/study/results \
+    --pictures docs/studies
 """
 
 import argparse
@@ -25,9 +26,9 @@ from typing import Any
 import matplotlib as mpl
 
 from gym_babble import evaluate, scenarios
-from gym_babble.evaluation import wilson
-from gym_babble.ppo import PRESETS, train_ppo
-from gym_babble.tasks import TASKS, Task, task_of
+from gym_babble.study.evaluation import wilson
+from gym_babble.study.ppo import PRESETS, train_ppo
+from gym_babble.study.tasks import TASKS, Task, task_of
 
 mpl.use("agg")
 import matplotlib.pyplot as plt

@@ -22,10 +22,10 @@ from gym_babble.agents import (
     Scripted,
 )
 from gym_babble.config import Config
-from gym_babble.evaluation import Evaluation, evaluate
+from gym_babble.envs.registration import register_all
 from gym_babble.export import export_mjcf, export_urdf
-from gym_babble.registration import register_all
-from gym_babble.scenarios import Scenario, scenarios
+from gym_babble.study.evaluation import Evaluation, evaluate
+from gym_babble.study.scenarios import Scenario, scenarios
 
 __all__ = [
     "Config",

@@ -17,10 +17,11 @@ if TYPE_CHECKING:
 # Each crate with the crates of ours that it may depend on. A new crate enters here first.
 MAY_KNOW = {
     "babble_brain": set(),
-    "babble_body": set(),
-    "babble_env": {"babble_brain", "babble_body"},
+    "babble_eye": set(),
+    "babble_body": {"babble_eye"},
+    "babble_env": {"babble_brain", "babble_eye", "babble_body"},
     "babble_agent": {"babble_brain", "babble_env"},
-    "babble_py": {"babble_brain", "babble_body", "babble_env", "babble_agent"},
+    "babble_py": {"babble_brain", "babble_eye", "babble_body", "babble_env", "babble_agent"},
 }
 
 # Libraries that one crate alone may name, by their first letters (rapier3d, parry3d, numpy ...).

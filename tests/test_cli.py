@@ -13,16 +13,16 @@ from stable_baselines3 import PPO
 from gym_babble import (
     HebbBabbling,
     HebbGrasping,
-    contenders,
     evaluate,
     export_mjcf,
     export_urdf,
     scenarios,
 )
 from gym_babble.cli import main
-from gym_babble.ppo import train_ppo
-from gym_babble.registration import ENVIRONMENTS
-from gym_babble.tasks import GRASP, REACH
+from gym_babble.envs.registration import ENVIRONMENTS
+from gym_babble.study import contenders
+from gym_babble.study.ppo import train_ppo
+from gym_babble.study.tasks import GRASP, REACH
 
 MOVEMENTS = "500"
 

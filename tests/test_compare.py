@@ -7,13 +7,14 @@ from contextlib import contextmanager
 import pytest
 from rich.console import Console
 
-from gym_babble import contenders, evaluate, scenarios
-from gym_babble.compare import CONTENDERS, STUDIES, Played, Settings, compare
+from gym_babble import evaluate, scenarios
 from gym_babble.config import Config
 from gym_babble.errors import ConfigError
-from gym_babble.ppo import PRESETS
-from gym_babble.tables import OUTCOMES
-from gym_babble.tasks import GRASP
+from gym_babble.study import contenders
+from gym_babble.study.compare import CONTENDERS, STUDIES, Played, Settings, compare
+from gym_babble.study.ppo import PRESETS
+from gym_babble.study.tables import OUTCOMES
+from gym_babble.study.tasks import GRASP
 
 SMALL = Settings(cases=50, movements=500, ppo_steps=1)
 SMALL_GRASPING = Settings(task="grasp", cases=8, babbles=60, ppo_steps=1)
@@ -199,7 +200,9 @@ def test_seeds_are_pooled():
 def test_without_stable_baselines3_the_others_run(monkeypatch):
     monkeypatch.setitem(sys.modules, "stable_baselines3", None)
     for name in list(sys.modules):
-        if name in ("gym_babble.ppo", "gym_babble.sb3") or name.startswith("stable_baselines3."):
+        if name in ("gym_babble.study.ppo", "gym_babble.sb3") or name.startswith(
+            "stable_baselines3."
+        ):
             monkeypatch.delitem(sys.modules, name)
     said = []
     found = compare(["ppo-pattern", "scripted"], SMALL, say=said.append)

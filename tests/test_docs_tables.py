@@ -17,7 +17,7 @@ from comparing import ALL_IDS, BATCHES, CONTROLS_OF, REGIONS, TASKS
 from gym_babble import _core
 from gym_babble.config import Config
 from gym_babble.envs import BabbleGraspEnv
-from gym_babble.registration import ENVIRONMENTS
+from gym_babble.envs.registration import ENVIRONMENTS
 
 DOCSTRINGS = {task: inspect.cleandoc(kind.__doc__) for task, kind in TASKS.items()}
 each_task = pytest.mark.parametrize("task", TASKS)

@@ -9,7 +9,7 @@ from functools import partial
 import pytest
 import torch
 
-from gym_babble import compare, ppo
+from gym_babble.study import compare, ppo
 
 RUNS = {
     "hebb_reach.py": (

@@ -5,12 +5,13 @@ import pytest
 from matplotlib.image import imread
 from scipy import stats
 
-from gym_babble import HebbBabbling, Scripted, figures, scenarios
-from gym_babble.compare import Settings, compare
+from gym_babble import HebbBabbling, Scripted, scenarios
 from gym_babble.errors import ConfigError
-from gym_babble.film import GAP, contact_sheet
-from gym_babble.reproduce import starts_without_case, switched, ways, weight_sets
-from gym_babble.tables import share, t_interval
+from gym_babble.paper.reproduce import starts_without_case, switched, ways, weight_sets
+from gym_babble.study.compare import Settings, compare
+from gym_babble.study.tables import share, t_interval
+from gym_babble.viz import figures
+from gym_babble.viz.film import GAP, contact_sheet
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,7 @@ from stable_baselines3.common.callbacks import BaseCallback
 
 from gym_babble import evaluate, scenarios
 from gym_babble.errors import ConfigError
-from gym_babble.ppo import PRESETS, train_ppo
+from gym_babble.study.ppo import PRESETS, train_ppo
 
 
 def test_learns_whole_movements():

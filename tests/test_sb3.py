@@ -22,8 +22,8 @@ from stable_baselines3.common.vec_env import (
 )
 
 from gym_babble import HebbBabbling, scenarios
+from gym_babble.envs.registration import ENVIRONMENTS
 from gym_babble.errors import ActionError, ConfigError
-from gym_babble.registration import ENVIRONMENTS
 from gym_babble.sb3 import BabbleVecEnv
 
 # Two threads of PyTorch on a busy machine wait for each other: 20 s for what takes 1.
@@ -332,7 +332,7 @@ def test_pictures_and_videos(tmp_path):
     assert len(list(tmp_path.glob("*.mp4"))) == 2
 
 
-@pytest.mark.parametrize("module", ["sb3", "ppo"])
+@pytest.mark.parametrize("module", ["sb3", "study.ppo"])
 def test_names_the_extra_that_is_missing(module):
     script = f"""
 import sys

@@ -19,7 +19,7 @@ from gym_babble import (
 )
 from gym_babble.envs import BabbleReachEnv
 from gym_babble.errors import BabbleError, ConfigError, ScenarioError
-from gym_babble.evaluation import wilson
+from gym_babble.study.evaluation import wilson
 
 
 def test_table1_is_the_same_for_everyone():

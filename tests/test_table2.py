@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from gym_babble import HebbGrasping, figures, scenarios
-from gym_babble import table2 as grasping
-from gym_babble.tables import table2_tables
+from gym_babble import HebbGrasping, scenarios
+from gym_babble.paper import table2 as grasping
+from gym_babble.study.tables import table2_tables
+from gym_babble.viz import figures
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ use safetensors::tensor::{Dtype, TensorView};
 use xxhash_rust::xxh3::Xxh3;
 
 /// Neurons of the fovea's map, whose weights a file of grasping holds.
-const FOVEA: usize = babble_env::grasp::FOVEA_NEURONS;
+const FOVEA: usize = babble_env::tasks::grasp::FOVEA_NEURONS;
 
 /// Tensors of an association.
 const PARTS: [&str; 3] = ["weights", "a_bar", "g_bar"];

@@ -14,7 +14,7 @@ from gym_babble.agents.movements import MovementAgent
 from gym_babble.envs import BabbleReachEnv
 from gym_babble.errors import AgentFileError, ConfigError
 from gym_babble.progress import track
-from gym_babble.scenarios import check_seed
+from gym_babble.study.scenarios import check_seed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

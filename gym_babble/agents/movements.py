@@ -9,8 +9,8 @@ import numpy as np
 
 from gym_babble.agents.base import EnvLike, choices_of, flat_senses
 from gym_babble.envs.reach import ReachChoices
+from gym_babble.envs.spaces import Spec
 from gym_babble.errors import ConfigError
-from gym_babble.spaces import Spec
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from gym_babble import _core
+from gym_babble.envs.spaces import Spec, observation_space
 from gym_babble.errors import ConfigError, ScenarioError
-from gym_babble.spaces import Spec, observation_space
 
 if TYPE_CHECKING:
     from gymnasium import spaces
     from numpy.typing import NDArray
 
-    from gym_babble.spaces import Task
+    from gym_babble.envs.spaces import Task
 
 CAMERAS = ("third_person", "eye", "fovea", "edges")
 RENDER_MODES = ("human", "rgb_array", "rgb_array_list")

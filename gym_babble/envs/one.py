@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import gymnasium
 
-from gym_babble.spaces import need_reset
+from gym_babble.envs.spaces import need_reset
 
 if TYPE_CHECKING:
     import numpy as np

@@ -9,8 +9,8 @@ import gymnasium
 from gym_babble import _core
 from gym_babble.envs.choices import RENDER_MODES
 from gym_babble.envs.one import OneEnv
+from gym_babble.envs.spaces import as_actions
 from gym_babble.envs.window import Window
-from gym_babble.spaces import as_actions
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -14,8 +14,8 @@ from gymnasium.vector.utils import batch_space
 from gym_babble import _core
 from gym_babble.envs.choices import RENDER_MODES, check_whole
 from gym_babble.envs.one import OneEnv
+from gym_babble.envs.spaces import as_actions
 from gym_babble.errors import ConfigError
-from gym_babble.spaces import as_actions
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 use babble_agent::grasp::{GraspBabbling, GraspHebb, GraspHebbConfig, Metadata};
 use babble_agent::{HebbConfig, Variant, store};
-use babble_env::grasp::GraspRequest;
-use babble_env::reach::movement::Fidelity;
+use babble_env::tasks::grasp::GraspRequest;
+use babble_env::tasks::reach::movement::Fidelity;
 use babble_env::{Autoreset, Batch, Config, EnvError, Task};
 use babble_fuzz::snapshots::{body_of, grasping, reaching};
 use safetensors::SafeTensors;

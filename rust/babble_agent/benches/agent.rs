@@ -4,8 +4,8 @@ use std::hint::black_box;
 
 use babble_agent::reference::{oracle, scripted};
 use babble_agent::{Babbling, Hebb, HebbConfig, Variant};
-use babble_env::reach::movement::{Fidelity, MovementPath};
-use babble_env::reach::protocol;
+use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
+use babble_env::tasks::reach::protocol;
 use babble_env::{Config, Options, Outcome, Pool, Purpose, ReachTask};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 

@@ -1,6 +1,6 @@
 //! Random movements (motor babbling), of which the legal ones are experienced.
 
-use babble_env::reach::movement::{Fidelity, MovementPath};
+use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
 use babble_env::{EnvError, Pool, Purpose, ReachCase, ReachTask, Stop, Stream};
 use rayon::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Choices of a movement that need no learning, and how a movement is played in other controls.
 
-use babble_env::reach::SENSES;
-use babble_env::reach::movement::{Fidelity, MovementPath};
+use babble_env::tasks::reach::SENSES;
+use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
 use babble_env::{EnvError, Outcome, ReachCase, ReachTask};
 
 /// Values of b1 that the oracle tries: 0.01, 0.02, … 0.99.
@@ -34,7 +34,7 @@ pub fn case_from_senses(task: &ReachTask, senses: &[f32; SENSES]) -> Result<Reac
             .eye
             .point_in_plane(gaze, pair(2), 0.0)
             .ok_or_else(|| nowhere("obstacle"))?;
-        Some(babble_env::reach::case::obstacle_at(task, centre))
+        Some(babble_env::tasks::reach::case::obstacle_at(task, centre))
     };
     Ok(ReachCase {
         start,

@@ -1,7 +1,7 @@
 //! A learned agent as a safetensors file: weights and averages as tensors, all else as JSON.
 
 use babble_env::Config;
-use babble_env::reach::movement::Fidelity;
+use babble_env::tasks::reach::movement::Fidelity;
 use serde::{Deserialize, Serialize};
 
 use crate::error::AgentError;

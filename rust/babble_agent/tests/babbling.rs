@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use babble_agent::{AgentError, Babbling, Experience, Hebb, HebbConfig, Variant};
-use babble_env::reach::movement::{Fidelity, MovementPath};
-use babble_env::reach::protocol;
+use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
+use babble_env::tasks::reach::protocol;
 use babble_env::{
     Config, Control, EnvError, Options, Outcome, Pool, Purpose, ReachCase, ReachTask,
 };

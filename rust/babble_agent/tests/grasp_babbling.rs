@@ -6,7 +6,7 @@ use babble_agent::AgentError;
 use babble_agent::grasp::holding::trials;
 use babble_agent::grasp::{Experience, GraspBabbling, GraspHebb, GraspHebbConfig};
 use babble_brain::{MapConfig, PopulationMap};
-use babble_env::grasp::{FOVEA_NEURONS, GraspCase};
+use babble_env::tasks::grasp::{FOVEA_NEURONS, GraspCase};
 use babble_env::{Autoreset, Batch, Config, EnvError, GraspOptions, GraspTask, Pool};
 
 const DIAMETERS: [f64; 2] = [0.024, 0.06];

@@ -2,7 +2,7 @@
 
 use babble_agent::grasp::{Experience, GraspBabbling, GraspHebb, GraspHebbConfig, load, save};
 use babble_agent::{AgentError, Babbling, Hebb, HebbConfig, Variant, store};
-use babble_env::reach::movement::Fidelity;
+use babble_env::tasks::reach::movement::Fidelity;
 use babble_env::{Config, GraspOptions, GraspTask, Pool};
 
 /// A small agent that has learnt a little, and its file.

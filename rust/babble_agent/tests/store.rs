@@ -2,7 +2,7 @@
 
 use babble_agent::store::{Metadata, load, save};
 use babble_agent::{AgentError, Babbling, Hebb, HebbConfig, Variant};
-use babble_env::reach::movement::Fidelity;
+use babble_env::tasks::reach::movement::Fidelity;
 use babble_env::{Config, Options, Pool, ReachTask};
 
 /// A small agent that has learnt a little, and its file.

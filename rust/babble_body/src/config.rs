@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::arm::PlanarArm;
 use crate::error::{BodyError, within};
-use crate::eye::EyeConfig;
 use crate::joints::{self, Joints};
 use crate::skeleton;
+use babble_eye::EyeConfig;
 
 /// The arm's two segments.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

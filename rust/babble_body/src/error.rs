@@ -1,4 +1,4 @@
-use crate::eye::EyeError;
+use babble_eye::EyeError;
 
 /// What can be wrong with a body.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

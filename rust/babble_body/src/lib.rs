@@ -6,7 +6,6 @@ pub mod config;
 pub mod description;
 pub mod dynamics;
 mod error;
-pub mod eye;
 pub mod inertia;
 pub mod joints;
 pub mod obstacle;

@@ -3,9 +3,9 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::config::Body;
-use crate::eye::{Gaze, Material, Primitive, Shape};
 use crate::obstacle::Obstacle;
 use crate::skeleton::{self, Bone, Part};
+use babble_eye::{Gaze, Material, Primitive, Shape};
 
 pub(crate) const SLEEVE: Material = Material::plain([92, 134, 178]);
 pub(crate) const FOREARM: Material = Material::plain([112, 154, 196]);
@@ -91,7 +91,7 @@ pub fn push_surroundings(
     scene: &mut Vec<Primitive>,
     body: &Body,
     gaze: Gaze,
-    eye: &crate::eye::Eye,
+    eye: &babble_eye::Eye,
 ) {
     const BALL_M: f64 = 0.018;
     let centre = Vector3::from(body.eye.position_m);

@@ -6,10 +6,10 @@ use std::collections::HashSet;
 
 use babble_body::config::Fingers;
 use babble_body::description::{self, LinkDescription};
-use babble_body::eye::Shape;
 use babble_body::inertia::Inertia;
 use babble_body::robot::Solid;
 use babble_body::{Body, Dynamics, PlanarArm, Robot};
+use babble_eye::Shape;
 use grasping::{DT, FAR, setup};
 use nalgebra::{Isometry3, Matrix3, Point3, Translation3, UnitQuaternion, Vector3};
 use parry3d::mass_properties::MassProperties;

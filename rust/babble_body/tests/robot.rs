@@ -345,8 +345,8 @@ fn thumb_and_fingers_close_towards_each_other() {
     };
     let palm = robot.palm(&robot.world(&setup([0.0, FRAC_PI_2, 0.0, 0.0], FAR)));
     let tips = |flexion: f64| {
-        let tip = |shape: &babble_body::eye::Shape| match shape {
-            babble_body::eye::Shape::Capsule { b, .. } => palm.local_from_world(b),
+        let tip = |shape: &babble_eye::Shape| match shape {
+            babble_eye::Shape::Capsule { b, .. } => palm.local_from_world(b),
             other => panic!("{other:?}"),
         };
         let scene = scene(flexion);
@@ -370,7 +370,7 @@ proptest! {
         q1 in -1.3..3.1_f64, q2 in 0.1..2.2_f64, thumb in 0.0..1.5_f64, finger in 0.0..1.5_f64,
         x in -0.4..0.4_f64, y in -0.4..0.4_f64, z in -0.05..0.05_f64,
     ) {
-        use babble_body::eye::Shape;
+        use babble_eye::Shape;
         let robot = robot();
         let posture = [q1, q2, thumb, finger];
         let mut scene = Vec::new();

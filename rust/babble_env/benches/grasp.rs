@@ -2,8 +2,8 @@
 
 use std::hint::black_box;
 
-use babble_env::grasp::{Grasp, GraspRequest, Grip};
 use babble_env::task::{Episode, Task};
+use babble_env::tasks::grasp::{Grasp, GraspRequest, Grip};
 use babble_env::{Config, Control, GraspOptions, GraspTask, Purpose, Stream, snapshot};
 use criterion::{Criterion, criterion_group, criterion_main};
 

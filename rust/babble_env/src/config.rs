@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::error::EnvError;
-use crate::grasp::GraspNumbers;
+use crate::tasks::grasp::GraspNumbers;
 
 /// Names of the profiles.
 pub const PROFILES: [&str; 2] = ["paper", "icub"];

@@ -1,6 +1,6 @@
 //! What the eye, and a person, sees of an episode of any task.
 
-use babble_body::eye::{
+use babble_eye::{
     Eye, Gaze, Primitive, draw_red_over, foveal_edges, foveal_picture, render_rgb, render_smooth,
     third_person,
 };

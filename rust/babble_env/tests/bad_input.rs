@@ -3,7 +3,7 @@
 mod playing;
 
 use babble_env::batch::Record;
-use babble_env::reach::case::{CaseRequest, ObstacleRequest, obstacle_at};
+use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest, obstacle_at};
 use babble_env::{
     Autoreset, Batch, Config, Control, EnvError, Options, Pool, ReachTask, Reward, Task,
 };

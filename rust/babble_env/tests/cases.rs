@@ -2,9 +2,9 @@
 
 mod playing;
 
-use babble_env::reach::case::{CaseRequest, ObstacleRequest, obstacle_at};
-use babble_env::reach::movement::{Fidelity, MovementPath};
-use babble_env::reach::protocol;
+use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest, obstacle_at};
+use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
+use babble_env::tasks::reach::protocol;
 use babble_env::{Config, Control, Options, Pool, Purpose, ReachCase, ReachTask, Stream};
 use nalgebra::Vector2;
 use playing::{control, task};

@@ -3,7 +3,7 @@
 
 mod playing;
 
-use babble_env::grasp::{GraspCase, GraspRequest, InHand, Region, protocol};
+use babble_env::tasks::grasp::{GraspCase, GraspRequest, InHand, Region, protocol};
 use babble_env::{
     Autoreset, Batch, Config, Control, EnvError, GraspOptions, GraspTask, Pool, Purpose, Reward,
     Stream,

@@ -1,7 +1,7 @@
 //! When a grasp counts, as a law of the counts of enclosing contacts alone.
 
 use babble_env::Config;
-use babble_env::grasp::{Contacts, Enclosure, GraspNumbers, Grip};
+use babble_env::tasks::grasp::{Contacts, Enclosure, GraspNumbers, Grip};
 use proptest::collection::vec;
 use proptest::prelude::*;
 

@@ -5,7 +5,7 @@ mod playing;
 use std::sync::Arc;
 
 use babble_body::robot::{Drive, Pull, World, towards};
-use babble_env::grasp::{GraspRequest, GraspState, Grip};
+use babble_env::tasks::grasp::{GraspRequest, GraspState, Grip};
 use babble_env::{Batch, Control, GraspOptions, GraspTask, Outcome};
 use nalgebra::Vector2;
 use playing::grasping::{

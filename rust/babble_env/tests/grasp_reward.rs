@@ -2,8 +2,8 @@
 
 mod playing;
 
-use babble_env::grasp::{FACTS, GraspRequest, GraspState, Grip, goal_reward};
 use babble_env::task::Phase;
+use babble_env::tasks::grasp::{FACTS, GraspRequest, GraspState, Grip, goal_reward};
 use babble_env::{Autoreset, Batch, Control, GraspOptions, GraspTask, Outcome, Reward, Task};
 use nalgebra::Vector3;
 use playing::grasping::{

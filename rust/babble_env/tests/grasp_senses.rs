@@ -2,11 +2,11 @@
 
 mod playing;
 
-use babble_body::eye::{Gaze, Material, Primitive, Shape, foveal_shape, red_centroid};
 use babble_body::pose;
 use babble_env::batch::Record;
-use babble_env::grasp::{FOVEA_NEURONS, GraspRequest, GraspState, Region, see};
+use babble_env::tasks::grasp::{FOVEA_NEURONS, GraspRequest, GraspState, Region, see};
 use babble_env::{Autoreset, Config, Control, GraspOptions, GraspTask};
+use babble_eye::{Gaze, Material, Primitive, Shape, foveal_shape, red_centroid};
 use nalgebra::{Matrix3, Vector3};
 use playing::grasping::{
     CONTROLS, EYE, FOVEA, POSTURE, STRETCH, TIME, TOUCH, asked, before_the_palm, bounds, grasp,

@@ -4,7 +4,7 @@ mod playing;
 
 use std::sync::Arc;
 
-use babble_env::grasp::{GraspRequest, Region};
+use babble_env::tasks::grasp::{GraspRequest, Region};
 use babble_env::{Autoreset, Batch, Config, Control, EnvError, GraspOptions, GraspTask, Reward};
 use playing::grasping::{
     CONTROLS, before_the_palm, goal_form, grasp, grasp_with, script, with_control,

@@ -4,14 +4,14 @@
 mod playing;
 
 use babble_body::Obstacle;
-use babble_body::eye::Gaze;
-use babble_env::grasp::{GraspRequest, GraspState, Grip};
-use babble_env::reach::ReachState;
-use babble_env::reach::case::{CaseRequest, ObstacleRequest};
 use babble_env::task::{Phase, State};
+use babble_env::tasks::grasp::{GraspRequest, GraspState, Grip};
+use babble_env::tasks::reach::ReachState;
+use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest};
 use babble_env::{
     Autoreset, Batch, Control, EnvError, GraspOptions, GraspTask, Options, Outcome, Task, snapshot,
 };
+use babble_eye::Gaze;
 use nalgebra::Vector2;
 use playing::grasping::{before_the_palm, grasp, grasp_with, obstacle, script, with_control};
 use playing::{bits, control, seeded, task};

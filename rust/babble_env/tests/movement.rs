@@ -2,8 +2,8 @@
 
 mod playing;
 
-use babble_env::reach::case::{CaseRequest, ObstacleRequest};
-use babble_env::reach::movement::{Fidelity, MovementPath};
+use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest};
+use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
 use babble_env::{
     Autoreset, Batch, Config, Control, Options, Outcome, Purpose, ReachCase, ReachTask, Stream,
 };

@@ -3,8 +3,8 @@
 mod playing;
 
 use babble_env::batch::Record;
-use babble_env::reach::case::{CaseRequest, ObstacleRequest};
-use babble_env::reach::{IS_SUCCESS, goal_reward};
+use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest};
+use babble_env::tasks::reach::{IS_SUCCESS, goal_reward};
 use babble_env::{Autoreset, Batch, Control, Options, Outcome, ReachTask, Reward, Task};
 use playing::{Actions, batch, control, goal};
 

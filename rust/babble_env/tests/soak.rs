@@ -7,8 +7,8 @@ mod playing;
 use std::fmt;
 use std::sync::Arc;
 
-use babble_env::grasp::Region;
 use babble_env::task::{Episode, State};
+use babble_env::tasks::grasp::Region;
 use babble_env::{
     Autoreset, Batch, Config, Control, GraspOptions, GraspTask, Options, Purpose, ReachTask,
     Reward, Stream, Task,
@@ -277,7 +277,7 @@ fn soak_reaching(steps: usize) {
         let ask = |envs: &mut Batch<ReachTask>, i: usize, _: &mut Stream| {
             // The case of another environment, which can be played.
             let case = envs.state((i + 1) % ENVS).unwrap().case;
-            let request = babble_env::reach::case::CaseRequest {
+            let request = babble_env::tasks::reach::case::CaseRequest {
                 start: Some(case.hand),
                 target: Some(case.target),
                 ..Default::default()

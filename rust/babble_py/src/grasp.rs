@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use babble_agent::grasp::holding;
 use babble_body::Obstacle;
-use babble_env::grasp::{GraspState, Region, goal_reward, protocol};
-use babble_env::{Config, Control, GraspCase, GraspOptions, Reward, Task as _, grasp};
+use babble_env::tasks::grasp;
+use babble_env::tasks::grasp::{GraspState, Region, goal_reward, protocol};
+use babble_env::{Config, Control, GraspCase, GraspOptions, Reward, Task as _};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

@@ -2,7 +2,7 @@
 
 use babble_agent::AgentError;
 use babble_agent::grasp::{self, GraspBabbling, GraspHebbConfig};
-use babble_env::grasp::FOVEA_NEURONS;
+use babble_env::tasks::grasp::FOVEA_NEURONS;
 use babble_env::{Config, EnvError, Pool};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use babble_agent::reference;
 use babble_body::{Obstacle, description};
-use babble_env::reach::case::{CaseRequest, ObstacleRequest};
-use babble_env::reach::movement::{Fidelity, MovementPath};
-use babble_env::reach::{ReachState, SENSES, goal_reward, protocol};
+use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest};
+use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
+use babble_env::tasks::reach::{ReachState, SENSES, goal_reward, protocol};
 use babble_env::{Config, Control, EnvError, Options, Purpose, ReachCase, Reward, Task as _};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;

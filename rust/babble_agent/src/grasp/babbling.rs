@@ -1,6 +1,6 @@
 //! Babbling with the object in the hand: the enclosure reflex closes the hand, the arm moves.
 
-use babble_env::grasp::{FOVEA_NEURONS, GraspTask, InHand};
+use babble_env::tasks::grasp::{FOVEA_NEURONS, GraspTask, InHand};
 use babble_env::{EnvError, Pool, Purpose, Stop, Stream};
 use rayon::prelude::*;
 

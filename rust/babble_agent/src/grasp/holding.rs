@@ -1,6 +1,6 @@
 //! How well the reflex holds: objects put at the palm, carried about without support.
 
-use babble_env::grasp::{GraspTask, InHand};
+use babble_env::tasks::grasp::{GraspTask, InHand};
 use babble_env::{EnvError, Pool, Purpose, Stop, Stream};
 use rayon::prelude::*;
 

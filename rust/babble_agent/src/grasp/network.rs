@@ -2,7 +2,7 @@
 
 use babble_brain::covariance::{Association, CovarianceConfig};
 use babble_brain::maps::{MapConfig, PopulationMap};
-use babble_env::grasp::FOVEA_NEURONS;
+use babble_env::tasks::grasp::FOVEA_NEURONS;
 use serde::{Deserialize, Serialize};
 
 use super::babbling::Experience;

@@ -5,8 +5,8 @@ use nalgebra::Vector3;
 use super::kinematics::{Frame, place};
 use super::links::{Part, Solid};
 use super::{Robot, World};
-use crate::eye::{Material, Primitive, Shape};
 use crate::pose::{FOREARM, SKIN, SLEEVE};
+use babble_eye::{Material, Primitive, Shape};
 
 impl Robot {
     /// Adds arm and hand, the upper arm first.

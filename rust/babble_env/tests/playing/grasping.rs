@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use babble_body::Obstacle;
-use babble_env::grasp::{FOVEA_NEURONS, GraspRequest, GraspState};
+use babble_env::tasks::grasp::{FOVEA_NEURONS, GraspRequest, GraspState};
 use babble_env::{
     Autoreset, Batch, Config, Control, GraspOptions, GraspTask, Outcome, Reward, Task,
 };

@@ -1,0 +1,1 @@
+"""Test cases, evaluation, and the comparison of agents."""

@@ -1,0 +1,148 @@
+"""Success, collision and joint-limit rates of an agent, with intervals."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import gymnasium
+import numpy as np
+
+from gym_babble.errors import ConfigError
+from gym_babble.progress import track
+from gym_babble.study.scenarios import scenarios
+from gym_babble.study.tasks import task_of
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from gym_babble.agents.base import Agent
+    from gym_babble.config import BodyLike
+    from gym_babble.study.scenarios import GraspScenario, Scenario
+
+__all__ = ["Evaluation", "evaluate", "wilson"]
+
+ENVS = 250
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """How the episodes of an evaluation ended."""
+
+    outcomes: tuple[str, ...]
+    """Outcome of each case, in their order."""
+    steps: tuple[int, ...]
+    """Control steps of each case; in `pattern` control 1."""
+    returns: tuple[float, ...]
+    """Sum of rewards of each case."""
+    facts: dict[str, tuple[bool, ...]] = field(default_factory=dict)
+    """What was true at the end of each case, by the names that the infos have too."""
+
+    def count(self, outcome: str) -> int:
+        """How many cases ended so."""
+        return Counter(self.outcomes)[outcome]
+
+    def rate(self, outcome: str) -> float:
+        """Share of the cases that ended so."""
+        return self.count(outcome) / len(self.outcomes)
+
+    def interval(self, outcome: str) -> tuple[float, float]:
+        """95 % Wilson interval of the share."""
+        return wilson(self.count(outcome), len(self.outcomes))
+
+    def __add__(self, other: Evaluation) -> Evaluation:
+        """Both together, as of one larger evaluation in the same environment."""
+        names = {**self.facts, **other.facts}
+        return Evaluation(
+            self.outcomes + other.outcomes,
+            self.steps + other.steps,
+            self.returns + other.returns,
+            {name: self.facts.get(name, ()) + other.facts.get(name, ()) for name in names},
+        )
+
+
+def wilson(count: int, n: int, z: float = 1.959964) -> tuple[float, float]:
+    """Wilson score interval of a share, 95 % by default (Wilson 1927)."""
+    if n == 0:
+        return 0.0, 1.0
+    p = count / n
+    middle = (p + z * z / (2 * n)) / (1 + z * z / n)
+    half = z / (1 + z * z / n) * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
+    # The share lies within, also where rounding would have it beside an end at 0 or 1.
+    return max(0.0, min(p, middle - half)), min(1.0, max(p, middle + half))
+
+
+def evaluate(
+    agent: Agent,
+    env_id: str = "BabbleReachPattern-v0",
+    cases: Sequence[Scenario | GraspScenario] | None = None,
+    *,
+    body: BodyLike = "paper",
+    deterministic: bool = True,
+    progress_bar: bool = False,
+    **env_kwargs: Any,
+) -> Evaluation:
+    """Plays one episode of each case.
+
+    Args:
+        agent: Anything with stable-baselines3's `predict`.
+        env_id: Environment to play in.
+        cases: From `scenarios`; if not given 1,000 of Table I, or of the region "palm_side" in
+            grasping, of seed 0 and split "test".
+        body: Body and task.
+        deterministic: Passed to `predict`.
+        progress_bar: Show a bar with the time left.
+        env_kwargs: Further arguments of the environment.
+
+    Raises:
+        ConfigError: There are no cases, or an argument is not one there is.
+        ScenarioError: A case cannot be played on this body.
+    """
+    if cases is None:
+        cases = scenarios(task_of(env_id).protocol, 1000, body=body)
+    if not cases:
+        raise ConfigError("cases is empty, expected at least one")
+    groups = [cases[i : i + ENVS] for i in range(0, len(cases), ENVS)]
+    result = Evaluation((), (), ())
+    sizes = (len(group) for group in groups)
+    for i, _ in enumerate(track(sizes, "evaluating", total=len(cases), show=progress_bar)):
+        envs = gymnasium.make_vec(env_id, num_envs=len(groups[i]), body=body, **env_kwargs)
+        result += _play(agent, envs, groups[i], deterministic=deterministic)
+        envs.close()
+    return result
+
+
+def _play(
+    agent: Agent, envs: Any, cases: Sequence[Scenario | GraspScenario], *, deterministic: bool
+) -> Evaluation:
+    """One episode in each environment; those that have ended go on unseen."""
+    n = len(cases)
+    observation, _ = envs.reset(seed=0, options={"scenario": list(cases)})
+    state: Any = None
+    starts = np.ones(n, np.bool_)
+    running = np.ones(n, np.bool_)
+    steps, returns = np.zeros(n, np.int64), np.zeros(n)
+    outcomes = np.full(n, "running", object)
+    names = envs.get_attr("choices")[0].spec.facts
+    facts = {name: np.zeros(n, np.bool_) for name in names}
+    while running.any():
+        actions, state = agent.predict(observation, state, starts, deterministic)
+        observation, rewards, terminated, truncated, infos = envs.step(actions)
+        ended = terminated | truncated
+        steps[running] += 1
+        returns[running] += rewards[running]
+        ending = running & ended
+        outcomes[ending] = infos["outcome"][ending]
+        for name, held in facts.items():
+            held[ending] = infos[name][ending]
+        running &= ~ended
+        # Ended environments begin anew at their next step; what they do from now on is unseen.
+        starts = ended
+    return Evaluation(
+        tuple(outcomes),
+        tuple(steps.tolist()),
+        tuple(returns.tolist()),
+        {name: tuple(held.tolist()) for name, held in facts.items()},
+    )

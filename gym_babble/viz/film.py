@@ -1,0 +1,133 @@
+"""Pictures of an episode: frames, contact sheets, GIF and MP4."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from io import BytesIO
+from typing import TYPE_CHECKING, Any
+
+import gymnasium
+import numpy as np
+
+from gym_babble.errors import MissingExtraError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from gym_babble.agents.loading import LoadedAgent
+
+__all__ = ["Film", "contact_sheet", "png", "record", "save_film"]
+
+# White between the pictures of a contact sheet [pixel].
+GAP = 6
+
+
+@dataclass(frozen=True)
+class Film:
+    """The frames of one episode."""
+
+    frames: list[NDArray[np.uint8]]
+    """Pictures (height, width, 3), one a control step."""
+    fps: int
+    """Frames a second in real time."""
+    outcome: str
+    """How the episode ended."""
+
+
+def record(
+    loaded: LoadedAgent,
+    *,
+    seed: int = 0,
+    options: dict[str, Any] | None = None,
+    camera: str = "third_person",
+    size: int = 480,
+) -> Film:
+    """Plays one episode and takes a picture at each control step."""
+    env: Any = gymnasium.make(
+        loaded.env_id,
+        render_mode="rgb_array_list",
+        camera=camera,
+        width=size,
+        height=size,
+        body=loaded.body,
+        **loaded.env_kwargs,
+    )
+    observation, info = env.reset(seed=seed, options=options)
+    frames, state, start, running = list(env.render()), None, True, True
+    while running:
+        action, state = loaded.agent.predict(
+            observation, state, np.array([start]), deterministic=True
+        )
+        observation, _, terminated, truncated, info = env.step(action)
+        frames += env.render()
+        start, running = False, not (terminated or truncated)
+    env.close()
+    return Film(frames, env.metadata["render_fps"], info["outcome"])
+
+
+def contact_sheet(
+    frames: list[NDArray[np.uint8]], *, columns: int = 3, rows: int = 2
+) -> NDArray[np.uint8]:
+    """Frames spread evenly over an episode, from its first to its last, as one picture."""
+    chosen = np.linspace(0, len(frames) - 1, columns * rows).round().astype(int)
+    height, width, _ = frames[0].shape
+    down, right = height + GAP, width + GAP
+    sheet = np.full((rows * down - GAP, columns * right - GAP, 3), 255, np.uint8)
+    for k, i in enumerate(chosen.tolist()):
+        top, left = k // columns * down, k % columns * right
+        sheet[top : top + height, left : left + width] = frames[i]
+    return sheet
+
+
+def save_film(film: Film, folder: Path, kind: str) -> list[Path]:
+    """Writes a contact sheet, and the film as "png" frames, "gif" or "mp4"; returns the files."""
+    folder.mkdir(parents=True, exist_ok=True)
+    sheet = folder / "sheet.png"
+    sheet.write_bytes(png(contact_sheet(film.frames)))
+    if kind == "mp4":
+        return [sheet, _save_mp4(film, folder / "episode.mp4")]
+    if kind == "gif":
+        return [sheet, _save_gif(film, folder / "episode.gif")]
+    frames = [folder / f"frame{i:04d}.png" for i in range(len(film.frames))]
+    for path, frame in zip(frames, film.frames, strict=True):
+        path.write_bytes(png(frame))
+    return [sheet, *frames]
+
+
+def png(picture: NDArray[np.uint8]) -> bytes:
+    """A picture (height, width, 3) as a PNG file.
+
+    Raises:
+        MissingExtraError: Pillow is not there; matplotlib brings it.
+    """
+    buffer = BytesIO()
+    _pillow().fromarray(picture).save(buffer, "PNG", optimize=True)
+    return buffer.getvalue()
+
+
+def _save_gif(film: Film, path: Path) -> Path:
+    image = _pillow()
+    pictures = [image.fromarray(frame) for frame in film.frames]
+    pictures[0].save(
+        path, save_all=True, append_images=pictures[1:], duration=round(1000 / film.fps), loop=0
+    )
+    return path
+
+
+def _save_mp4(film: Film, path: Path) -> Path:
+    try:
+        from moviepy import ImageSequenceClip
+    except ImportError as error:
+        raise MissingExtraError("moviepy", "video") from error
+    ImageSequenceClip(film.frames, fps=film.fps).write_videofile(str(path), logger=None)
+    return path
+
+
+def _pillow() -> Any:
+    try:
+        from PIL import Image  # noqa: PLC0415 - an extra brings it
+    except ImportError as error:
+        raise MissingExtraError("pillow", "figures") from error
+    return Image

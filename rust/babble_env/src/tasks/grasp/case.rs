@@ -1,0 +1,223 @@
+//! Start, object and goal of one episode.
+
+use babble_body::Obstacle;
+use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
+
+use super::numbers::RegionNumbers;
+use super::task::GraspTask;
+use crate::error::EnvError;
+use crate::stream::Stream;
+
+/// How often a case is drawn before the config is called impossible.
+pub(super) const MAX_TRIES: u32 = 10_000;
+/// Least distance from the object to the point that it is to be carried to \[m\].
+const CARRY_M: f64 = 0.05;
+
+/// One case of the grasping task.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct GraspCase {
+    /// Shoulder and elbow at the start \[rad\]; the hand is open.
+    pub start: [f64; 2],
+    /// Centre of the object \[m\].
+    pub object: [f64; 2],
+    /// Its diameter \[m\].
+    pub diameter: f64,
+    /// In the goal form, where it is to be carried \[m\].
+    pub goal: Option<[f64; 2]>,
+    /// The obstacle, if there is one.
+    pub obstacle: Option<Obstacle>,
+}
+
+impl GraspCase {
+    /// Radius of the object \[m\].
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.diameter / 2.0
+    }
+}
+
+/// What a user asks of the cases to come. What is not asked for is drawn; there is no obstacle
+/// unless it is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct GraspRequest {
+    /// Shoulder and elbow at the start \[rad\].
+    pub start: Option<[f64; 2]>,
+    /// Centre of the object \[m\].
+    pub object: Option<[f64; 2]>,
+    /// Diameter of the object \[m\].
+    pub diameter: Option<f64>,
+    /// Where the object is to be carried \[m\].
+    pub goal: Option<[f64; 2]>,
+    /// The obstacle.
+    pub obstacle: Option<Obstacle>,
+}
+
+impl GraspRequest {
+    /// The next case that fulfils the request.
+    ///
+    /// # Errors
+    /// [`EnvError::Case`] for a part that cannot be played, [`EnvError::NoGraspCase`] when the rest
+    /// cannot be drawn.
+    pub fn draw(&self, task: &GraspTask, stream: &mut Stream) -> Result<GraspCase, EnvError> {
+        self.check(task)?;
+        let placed = self.start.is_some() && self.object.is_some();
+        let carried = !task.options.goal || self.goal.is_some();
+        let tries = if placed && carried && self.diameter.is_some() {
+            1
+        } else {
+            MAX_TRIES
+        };
+        let mut last = None;
+        for _ in 0..tries {
+            let case = self.fill(task, stream);
+            match playable(task, &case, self) {
+                Ok(()) => return Ok(case),
+                Err(error) => last = Some(error),
+            }
+        }
+        match last {
+            // The places were given, and no diameter or goal fits between them.
+            Some(error) if placed => Err(error),
+            last => Err(EnvError::NoGraspCase {
+                tries,
+                problem: last.map_or_else(String::new, |error| error.to_string()),
+            }),
+        }
+    }
+
+    /// Draws what is not given.
+    fn fill(&self, task: &GraspTask, stream: &mut Stream) -> GraspCase {
+        let region = task.region();
+        let diameter = task.draw_diameter(stream);
+        let object = draw_point(region, stream);
+        let start = draw_start(task, region, stream);
+        let object = self.object.unwrap_or(object);
+        let goal = task.options.goal.then(|| draw_point(region, stream));
+        GraspCase {
+            start: self.start.unwrap_or(start),
+            object,
+            diameter: self.diameter.unwrap_or(diameter),
+            goal: goal.map(|goal| self.goal.unwrap_or(goal)),
+            obstacle: self.obstacle,
+        }
+    }
+
+    /// Checks what is given by itself.
+    pub(super) fn check(&self, task: &GraspTask) -> Result<(), EnvError> {
+        if let Some(start) = self.start {
+            check_start(task, start)?;
+        }
+        for (what, point) in [("object", self.object), ("goal", self.goal)] {
+            let Some([x, y]) = point else { continue };
+            let reach = task.arm.length();
+            if !(x.is_finite() && y.is_finite() && libm::hypot(x, y) <= reach) {
+                return Err(EnvError::Case {
+                    what,
+                    problem: format!("[{x}, {y}] m is not within the arm's reach of {reach:.3} m"),
+                });
+            }
+        }
+        if self.goal.is_some() && !task.options.goal {
+            return Err(EnvError::Case {
+                what: "goal",
+                problem: "objects are carried with obs = \"goal\" alone".to_owned(),
+            });
+        }
+        if let Some(diameter) = self.diameter.filter(|d| !(0.005..=0.2).contains(d)) {
+            return Err(EnvError::Case {
+                what: "diameter",
+                problem: format!("{diameter} m is not in [0.005, 0.2]"),
+            });
+        }
+        self.obstacle
+            .as_ref()
+            .map_or(Ok(()), crate::tasks::reach::case::check_obstacle)
+    }
+}
+
+fn check_start(task: &GraspTask, start: [f64; 2]) -> Result<(), EnvError> {
+    if task.arm.in_range(start) {
+        return Ok(());
+    }
+    let [shoulder, elbow] = start.map(f64::to_degrees);
+    Err(EnvError::Case {
+        what: "start",
+        problem: format!(
+            "shoulder {shoulder:.1}° and elbow {elbow:.1}° are outside of the joint ranges"
+        ),
+    })
+}
+
+/// Whether arm, object and obstacle are clear of each other at the start. A drawn object can also
+/// be reached: some posture brings the palm to it.
+fn playable(task: &GraspTask, case: &GraspCase, request: &GraspRequest) -> Result<(), EnvError> {
+    let posture = task.robot.open_hand(case.start);
+    let centre = Vector2::from(case.object);
+    let gap = task.robot.clearance(posture, &centre.push(0.0)) - case.radius();
+    let least = task.config.grasp.clearance_m;
+    if gap < least {
+        return Err(EnvError::Case {
+            what: "object",
+            problem: format!(
+                "the arm at the start is {gap:.4} m from it, at least {least} m needed"
+            ),
+        });
+    }
+    if request.object.is_none() && task.grasp_posture(case.object, case.radius()).is_none() {
+        return Err(EnvError::Case {
+            what: "object",
+            problem: format!("{:?} m cannot be brought to the palm", case.object),
+        });
+    }
+    if let Some(goal) = case.goal.filter(|_| request.goal.is_none()) {
+        check_goal(task, case, goal)?;
+    }
+    let Some(obstacle) = &case.obstacle else {
+        return Ok(());
+    };
+    let arm = task.robot.clearance_of_vertical(posture, obstacle.centre) - obstacle.radius;
+    let object = (obstacle.centre - centre).norm() - obstacle.radius - case.radius();
+    if arm > 0.0 && object > 0.0 {
+        return Ok(());
+    }
+    Err(EnvError::Case {
+        what: "obstacle",
+        problem: format!(
+            "it is {arm:.4} m from the arm at the start and {object:.4} m from the object"
+        ),
+    })
+}
+
+/// A drawn goal is some way off, and some posture brings the object there.
+fn check_goal(task: &GraspTask, case: &GraspCase, goal: [f64; 2]) -> Result<(), EnvError> {
+    let [x, y] = [0, 1].map(|i| goal[i] - case.object[i]);
+    let clear = case.obstacle.is_none_or(|obstacle| {
+        (obstacle.centre - Vector2::from(goal)).norm() > obstacle.radius + case.radius()
+    });
+    let reachable = task.grasp_posture(goal, case.radius()).is_some();
+    if clear && reachable && libm::hypot(x, y) >= CARRY_M {
+        return Ok(());
+    }
+    Err(EnvError::Case {
+        what: "goal",
+        problem: format!("{goal:?} m is within {CARRY_M} m of the object, or cannot be reached"),
+    })
+}
+
+/// Uniform in distance and direction from the shoulder.
+fn draw_point(region: &RegionNumbers, stream: &mut Stream) -> [f64; 2] {
+    let radius = stream.uniform(region.radius_m[0], region.radius_m[1]);
+    let polar = stream.uniform(region.polar_deg[0], region.polar_deg[1]);
+    let (sin, cos) = libm::sincos(polar.to_radians());
+    [radius * cos, radius * sin]
+}
+
+fn draw_start(task: &GraspTask, region: &RegionNumbers, stream: &mut Stream) -> [f64; 2] {
+    let ranges = [region.shoulder_deg, region.elbow_deg];
+    [0, 1].map(|i| {
+        let [low, high] = ranges[i].map(f64::to_radians);
+        let (lower, upper) = (task.arm.lower[i], task.arm.upper_limit[i]);
+        stream.uniform(low.clamp(lower, upper), high.clamp(lower, upper))
+    })
+}

@@ -1,0 +1,106 @@
+//! An object put into the hand, which the enclosure reflex closes while the arm is moved about:
+//! what babbling does, and what shows how well the reflex holds.
+
+use babble_body::robot::{Ball, Setup, World, towards};
+use babble_eye::Gaze;
+
+use super::case::GraspCase;
+use super::sight::{FOVEA_NEURONS, see};
+use super::task::GraspTask;
+use crate::error::EnvError;
+use crate::stream::Stream;
+
+/// Gap between the open hand's palm and the object that is put there \[m\]; 1 mm \[C\].
+const GAP_M: f64 = 0.001;
+
+/// A world with an object at the palm, outside of any episode.
+#[derive(Debug, Clone)]
+pub struct InHand {
+    world: World,
+    case: GraspCase,
+}
+
+impl InHand {
+    /// The arm in a posture \[rad\] with the open hand, and an object of a diameter \[m\] on its support
+    /// before the palm.
+    #[must_use]
+    pub fn new(task: &GraspTask, arm: [f64; 2], diameter: f64) -> Self {
+        let radius = diameter / 2.0;
+        let object = task.before_palm(arm, radius, GAP_M);
+        let world = task.robot.world(&Setup {
+            posture: task.robot.open_hand(arm),
+            ball: Ball {
+                centre: object,
+                radius,
+            },
+            support: true,
+            obstacle: None,
+        });
+        let case = GraspCase {
+            start: arm,
+            object,
+            diameter,
+            goal: None,
+            obstacle: None,
+        };
+        Self { world, case }
+    }
+
+    /// The same in a random posture in which the object is clear of the upper arm.
+    ///
+    /// # Errors
+    /// [`EnvError::NoGraspCase`] if there is no such posture.
+    pub fn draw(task: &GraspTask, diameter: f64, stream: &mut Stream) -> Result<Self, EnvError> {
+        let arm = task.draw_free_posture(diameter / 2.0, stream)?;
+        Ok(Self::new(task, arm, diameter))
+    }
+
+    /// Arm, hand, object and support.
+    #[must_use]
+    pub const fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// Where the arm began \[rad\].
+    #[must_use]
+    pub const fn start(&self) -> [f64; 2] {
+        self.case.start
+    }
+
+    /// The reflex on the hand and the arm's muscles pulling to a posture \[rad\], for some time \[s\].
+    /// Returns how deep the object was pressed into arm and hand at most \[m\].
+    pub fn carry(&mut self, task: &GraspTask, arm: [f64; 2], seconds: f64) -> f64 {
+        let [thumb, finger] = task.reflex();
+        let drive = towards([arm[0], arm[1], thumb, finger]);
+        let steps = (seconds / task.config.grasp.physics_step_s()).round() as usize;
+        let mut deepest: f64 = 0.0;
+        for _ in 0..steps {
+            task.robot.step(&mut self.world, &drive);
+            deepest = deepest.max(task.robot.penetration(&self.world));
+        }
+        deepest
+    }
+
+    /// Takes the support away.
+    pub fn remove_support(&mut self, task: &GraspTask) {
+        task.robot.remove_support(&mut self.world);
+    }
+
+    /// Whether the object is before the palm and enclosed.
+    #[must_use]
+    pub fn is_held(&self, task: &GraspTask) -> bool {
+        task.in_hand(&self.world, self.case.radius()) && task.robot.touch(&self.world).encloses()
+    }
+
+    /// Angles of shoulder, elbow, thumb and finger \[rad\].
+    #[must_use]
+    pub fn posture(&self, task: &GraspTask) -> [f64; 4] {
+        task.robot.posture(&self.world)
+    }
+
+    /// Lets the eye find the object and fills in the fovea's edges; none where all of it is hidden.
+    #[must_use]
+    pub fn see(&self, task: &GraspTask, fovea: &mut [f32; FOVEA_NEURONS]) -> Option<Gaze> {
+        see(task, &self.world, &self.case, fovea)
+    }
+}

@@ -1,0 +1,69 @@
+//! What the eye, and a person, sees of an episode.
+
+use babble_body::pose;
+use babble_body::robot::World;
+use image::RgbImage;
+use nalgebra::{Vector2, Vector3};
+
+use super::episode::{GraspState, Moment};
+use super::sight;
+use super::task::GraspTask;
+use crate::error::EnvError;
+use crate::picture::{Scene, View, no_such_frame};
+
+/// A picture of an episode; `frame` picks a recorded moment, none is now.
+///
+/// # Errors
+/// [`EnvError::OutOfBounds`] for an edge or frame that is out of bounds.
+pub(super) fn picture(
+    task: &GraspTask,
+    state: &GraspState,
+    view: View,
+    size: [u32; 2],
+    frame: Option<usize>,
+) -> Result<RgbImage, EnvError> {
+    let (trail, moment) = match frame {
+        None => (&state.trail[..], None),
+        Some(frame) => {
+            let moment = state
+                .trail
+                .get(frame)
+                .ok_or_else(|| no_such_frame(frame, state.trail.len()))?;
+            (&state.trail[..=frame], Some(moment))
+        }
+    };
+    let past = moment.map(|moment| world_at(task, moment));
+    let world = past.as_ref().unwrap_or(&state.world);
+    let gaze = moment.map_or(state.gaze, |moment| moment.gaze);
+    let mut things = sight::scene(task, world, &state.case);
+    if view == View::ThirdPerson {
+        // The checkered ground stands for the table.
+        things.pop();
+        let palms: Vec<Vector2<f64>> = trail
+            .iter()
+            .map(|moment| Vector2::from(moment.palm))
+            .collect();
+        pose::push_trail(&mut things, &palms);
+        push_goal(&mut things, state);
+        pose::push_surroundings(&mut things, &task.config.body, gaze, &task.eye);
+    }
+    let scene = Scene {
+        things: &things,
+        on_top: &[],
+        eye: &task.eye,
+        gaze,
+    };
+    scene.picture(view, size)
+}
+
+fn world_at(task: &GraspTask, moment: &Moment) -> World {
+    task.robot
+        .posed(&moment.joints, &Vector3::from(moment.object))
+}
+
+/// Where the object is to be carried, on the ground.
+fn push_goal(things: &mut Vec<babble_eye::Primitive>, state: &GraspState) {
+    if let Some(goal) = state.case.goal {
+        things.push(pose::goal(goal));
+    }
+}

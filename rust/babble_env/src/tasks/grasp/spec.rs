@@ -1,0 +1,143 @@
+//! Observations, actions, rewards and outcomes of grasping.
+
+use std::borrow::Cow;
+
+use babble_eye::FOVEA_BLOCKS;
+
+use super::episode::FACTS;
+use super::sight::FOVEA_NEURONS;
+use super::task::GraspTask;
+use crate::options::{Control, Reward};
+use crate::outcome::Outcome;
+use crate::spec::{Entry, Spec};
+
+/// How an episode of grasping can stand or end.
+pub(super) const OUTCOMES: [Outcome; 5] = [
+    Outcome::Running,
+    Outcome::Success,
+    Outcome::Collision,
+    Outcome::Timeout,
+    Outcome::Lost,
+];
+const JOINTS: [&str; 4] = ["shoulder", "elbow", "thumb", "finger"];
+
+/// The spec of `task`.
+pub(super) fn spec(task: &GraspTask) -> Spec {
+    Spec {
+        senses: senses(task),
+        goals: goals(task),
+        action: action(task),
+        reward_terms: match (task.options.goal, task.options.reward) {
+            (true, _) => &["distance"],
+            (false, Reward::Progress) => &["progress", "enclosure", "success", "failure"],
+            (false, Reward::Sparse) => &["success"],
+        },
+        facts: &FACTS,
+        outcomes: OUTCOMES.map(Outcome::name).to_vec(),
+        max_episode_steps: task.options.max_episode_steps,
+        control_hz: 1.0 / task.config.grasp.control_period_s,
+    }
+}
+
+fn senses(task: &GraspTask) -> Vec<Entry> {
+    let share = |name, labels: Vec<&'static str>, unit: String, description| Entry {
+        name,
+        low: vec![0.0; labels.len()],
+        high: vec![1.0; labels.len()],
+        labels,
+        unit: unit.into(),
+        description,
+    };
+    let range = || "share of range".to_owned();
+    let stretch = task.stretch_bounds();
+    vec![
+        share(
+            "eye",
+            vec!["pan", "tilt"],
+            range(),
+            "gaze, which follows the object: where it is",
+        ),
+        share(
+            "fovea",
+            vec!["edge"; FOVEA_NEURONS],
+            format!("{FOVEA_BLOCKS} × {FOVEA_BLOCKS}, row by row"),
+            "edges in the middle of the eye's image: what the object is",
+        ),
+        share("arm", vec!["shoulder", "elbow"], range(), "joint angles"),
+        share(
+            "hand",
+            vec!["thumb", "finger"],
+            range(),
+            "flexion of thumb and virtual finger, 0 when open",
+        ),
+        Entry {
+            name: "stretch",
+            labels: JOINTS.to_vec(),
+            low: stretch.map(|x| -x).to_vec(),
+            high: stretch.to_vec(),
+            unit: "rad".into(),
+            description: "equilibrium point minus joint angle: the muscles' state",
+        },
+        share(
+            "touch",
+            vec!["palm", "thumb", "fingers"],
+            format!("share of {} N", task.config.grasp.touch_max_n),
+            "normal force on the object, mean over the last control step",
+        ),
+        share(
+            "time",
+            vec!["elapsed"],
+            "share of episode".to_owned(),
+            "control steps since the reset over the time limit",
+        ),
+    ]
+}
+
+fn goals(task: &GraspTask) -> Vec<Entry> {
+    let reach = task.goal_bound();
+    let goal = |name, description| Entry {
+        name,
+        labels: vec!["x", "y"],
+        low: vec![-reach; 2],
+        high: vec![reach; 2],
+        unit: "m".into(),
+        description,
+    };
+    vec![
+        goal(
+            "achieved_goal",
+            "position of the object's centre; at the bounds once it was lost",
+        ),
+        goal("desired_goal", "where it is to be carried"),
+    ]
+}
+
+fn action(task: &GraspTask) -> Entry {
+    let [arm, _, hand, _] = task.muscles();
+    let degrees = task.config.grasp.delta_posture_deg;
+    let (unit, description) = match task.options.control {
+        Control::Posture => (
+            Cow::from("half joint range"),
+            "equilibrium points of the muscles, −1…1 over the joint ranges",
+        ),
+        Control::Torque => (
+            Cow::from(format!(
+                "{} N·m (arm), {} N·m (hand)",
+                arm.torque_max, hand.torque_max
+            )),
+            "joint torques on top of the muscles' damping: T = action · torque_max − K_D q̇",
+        ),
+        Control::DeltaPosture | Control::Pattern => (
+            Cow::from(format!("{degrees} deg")),
+            "change of the muscles' equilibrium points, clipped to the joint ranges",
+        ),
+    };
+    Entry {
+        name: "action",
+        labels: JOINTS.to_vec(),
+        low: vec![-1.0; 4],
+        high: vec![1.0; 4],
+        unit,
+        description,
+    }
+}

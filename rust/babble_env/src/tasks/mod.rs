@@ -1,0 +1,4 @@
+//! The tasks, each in a folder of its own.
+
+pub mod grasp;
+pub mod reach;

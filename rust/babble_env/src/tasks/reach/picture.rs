@@ -1,0 +1,67 @@
+//! The scene of a picture of reaching.
+
+use babble_body::pose;
+use babble_eye::Primitive;
+use image::RgbImage;
+use nalgebra::Vector2;
+
+use super::episode::ReachState;
+use super::task::ReachTask;
+use crate::error::EnvError;
+use crate::picture::{Scene, View, no_such_frame};
+
+/// As [`crate::Task::picture`].
+pub(super) fn picture(
+    task: &ReachTask,
+    state: &ReachState,
+    view: View,
+    size: [u32; 2],
+    frame: Option<usize>,
+) -> Result<RgbImage, EnvError> {
+    let (q, trail) = moment(state, frame)?;
+    let things = things(task, state, q, trail, view);
+    // Nothing hides the target from the eye, so that an image's red pixels are those that its
+    // reflex saw (`ReachTask::foveate`).
+    let scene = Scene {
+        on_top: &things[..1],
+        things: &things,
+        eye: &task.eye,
+        gaze: state.gaze,
+    };
+    scene.picture(view, size)
+}
+
+fn moment(state: &ReachState, frame: Option<usize>) -> Result<([f64; 2], &[[f64; 2]]), EnvError> {
+    let Some(frame) = frame else {
+        return Ok((state.arm.q, &state.trail));
+    };
+    let q = state
+        .trail
+        .get(frame)
+        .ok_or_else(|| no_such_frame(frame, state.trail.len()))?;
+    Ok((*q, &state.trail[..=frame]))
+}
+
+/// The target first, then all else.
+fn things(
+    task: &ReachTask,
+    state: &ReachState,
+    q: [f64; 2],
+    trail: &[[f64; 2]],
+    view: View,
+) -> Vec<Primitive> {
+    let body = &task.config.body;
+    let mut things = vec![pose::target(body, state.case.target)];
+    if let Some(obstacle) = &state.case.obstacle {
+        things.push(pose::obstacle(body, obstacle));
+    }
+    pose::push_robot(&mut things, body, q);
+    if view == View::ThirdPerson {
+        let tips: Vec<Vector2<f64>> = trail.iter().map(|&q| task.arm.fingertip(q)).collect();
+        pose::push_trail(&mut things, &tips);
+        pose::push_surroundings(&mut things, body, state.gaze, &task.eye);
+    } else {
+        things.push(pose::ground(-body.obstacle.height_m / 2.0));
+    }
+    things
+}

@@ -10,6 +10,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from imports import circles, merged, python_graph, rust_graph
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -40,6 +41,11 @@ SHARED = {
 OF_ONE_TASK = re.compile(
     r"(?i)\w*(reach|grasp)\w*|\b(is|ever)_success\b|\b(obstacle|target|control|b1)\b"
 )
+
+# How many circles of files that use each other all crates have together, at most.
+RUST_CIRCLES = 9
+# The packages of gym_babble that use each other in a circle.
+PACKAGE_CIRCLES: list[set[str]] = [{"agents", "cli", "paper", "study", "viz"}]
 
 HEAVY_MODULES = {"matplotlib", "pygame", "ray", "rich", "stable_baselines3", "torch", "typer"}
 
@@ -127,6 +133,23 @@ def test_each_crate_that_simulates_turns_on_the_lints_of_clippy_toml(repository)
     kept_out = (repository / "clippy.toml").read_text(encoding="utf-8")
     for name in ("f64::sin", "f32::exp", "f64::mul_add", "ParallelIterator::sum", "HashMap"):
         assert name in kept_out
+
+
+def test_few_files_of_a_crate_use_each_other_in_a_circle(repository):
+    found = [
+        f"{source.parts[-3]}: {' '.join(sorted(circle))}"
+        for source in sorted((repository / "rust").glob("*/src/lib.rs"))
+        for circle in circles(rust_graph(source.parent))
+    ]
+    assert len(found) <= RUST_CIRCLES, "\n".join(found)
+
+
+def test_no_modules_of_the_package_import_each_other_in_a_circle(repository):
+    graph = python_graph(repository / "gym_babble")
+    assert not circles(graph)
+    package = {name: name.removeprefix("gym_babble.").partition(".")[0] for name in graph}
+    found = circles(merged(graph, package))
+    assert not [circle for circle in found if not any(circle <= old for old in PACKAGE_CIRCLES)]
 
 
 def test_import_loads_nothing_heavy(capsys):

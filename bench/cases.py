@@ -160,7 +160,7 @@ def physics() -> Iterator[Case]:
                 config = {"body": {"engine": engine, "grip": {"fingers": fingers}}}
                 ours = {"scene": scene, "config": json.dumps(config)}
                 yield Case(f"{row}-{name}", label, RUST, "babble_env:physics", ours)
-            model = export_mjcf(body=config, options={"diameter": DIAMETER_M})
+            model = export_mjcf(config=config, options={"diameter": DIAMETER_M})
             theirs = {"model": model, "place": place, "reflex": hand}
             yield Case(f"mujoco-{name}", label, "gym", "twin:physics", theirs)
 

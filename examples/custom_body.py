@@ -20,11 +20,11 @@ arguments = parser.parse_args()
 paper = Config.profile_named("paper")
 for kd in arguments.kd:
     muscles = replace(paper.body.muscles, kd=kd)
-    body = replace(paper, body=replace(paper.body, muscles=muscles))
-    env = gym.make("BabbleReachPattern-v0", body=body)
+    config = replace(paper, body=replace(paper.body, muscles=muscles))
+    env = gym.make("BabbleReachPattern-v0", config=config)
     agent = HebbBabbling(env, seed=0).learn(arguments.movements)
-    cases = scenarios("table1", arguments.cases, body=body)
-    result = evaluate(agent, cases=cases, body=body)
+    cases = scenarios("table1", arguments.cases, config=config)
+    result = evaluate(agent, cases=cases, config=config)
     print(
         f"K_D {kd:g}: lag {kd / muscles.kp:.2f} s, legal {agent.legal_rate:.3f}, "
         f"success {result.rate('success'):.3f}, collision {result.rate('collision'):.3f}, "

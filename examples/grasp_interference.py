@@ -20,7 +20,7 @@ parser.add_argument("--cases", type=int, default=200, help="cases of each seed")
 arguments = parser.parse_args()
 
 SMALL, BIG = 0.024, 0.06
-# What changes: its name, diameters babbled with, body and task, the agent's maps and rule.
+# What changes: its name, diameters babbled with, config, the agent's maps and rule.
 CHANGES = [
     ("small alone", [SMALL], {}, {}),
     ("big alone", [BIG], {}, {}),
@@ -58,12 +58,12 @@ HEADS = ("babbled with", "object", "gap [cm]", "thumb EP [deg]", "finger EP [deg
 HEADS += ("babbled EPs [deg]", "EPs recalled from the object in the hand [deg]")
 print(f"| {' | '.join(HEADS)} |")
 print("| --- " * len(HEADS) + "|")
-for name, diameters, body, config in CHANGES:
+for name, diameters, config, brain in CHANGES:
     found: dict[float, list[np.ndarray]] = {SMALL: [], BIG: []}
     hands: dict[float, list[np.ndarray]] = {SMALL: [], BIG: []}
     for seed in range(100, 100 + arguments.seeds):
-        env = BabbleGraspEnv(diameters=diameters, body={"profile": "paper", **body})
-        agent = HebbGrasping(env, seed=seed, config=config).learn(arguments.babbles)
+        env = BabbleGraspEnv(diameters=diameters, config={"profile": "paper", **config})
+        agent = HebbGrasping(env, seed=seed, config=brain).learn(arguments.babbles)
         left = agent.babbled
         again = agent.decide(left["eye"], left["fovea"])[:, 2:]
         for diameter in (SMALL, BIG):

@@ -67,7 +67,7 @@ def document(task: Task, runs: list[Run]) -> str:
     """The study as JSON: how it was made, and a line for each run."""
     head = {
         "command": f"python examples/{Path(__file__).name} {shlex.join(sys.argv[1:])}",
-        "body": "paper",
+        "config": "paper",
         "protocol": task.protocol,
     }
     used = [name for name in PRESETS if any(run["preset"] == name for run in runs)]

@@ -11,7 +11,7 @@ from gym_babble import Evaluation, HebbBabbling, evaluate, scenarios
 from gym_babble.envs import BabbleReachEnv
 
 FICK = {"frame": "fick", "pan_deg": [-180.0, 180.0], "tilt_deg": [-90.0, 0.0]}
-# What changes: its name, the body and task, the agent's maps and rule, legal movements.
+# What changes: its name, the config, the agent's maps and rule, legal movements.
 CHANGES: list[tuple[str, dict[str, Any], dict[str, Any], int]] = [
     ("none", {}, {}, 20_000),
     ("camera frame fick", {"body": {"eye": FICK}}, {}, 20_000),
@@ -37,15 +37,15 @@ arguments = parser.parse_args()
 
 print("| change | success | collision | joint limit | legal |")
 print("| --- | --- | --- | --- | --- |")
-for name, changes, config, movements in CHANGES:
-    body = {"profile": "paper", **changes}
+for name, changes, brain, movements in CHANGES:
+    config = {"profile": "paper", **changes}
     total, legal = Evaluation((), (), ()), 0.0
     for seed in range(100, 100 + arguments.seeds):
-        env = BabbleReachEnv(control="pattern", reward="sparse", body=body)
-        agent = HebbBabbling(env, seed=seed, config=config)
+        env = BabbleReachEnv(control="pattern", reward="sparse", config=config)
+        agent = HebbBabbling(env, seed=seed, config=brain)
         agent.learn(arguments.movements or movements)
-        cases = scenarios("table1", arguments.cases, seed, split="validation", body=body)
-        total += evaluate(agent, cases=cases, body=body)
+        cases = scenarios("table1", arguments.cases, seed, split="validation", config=config)
+        total += evaluate(agent, cases=cases, config=config)
         legal += agent.legal_rate / arguments.seeds
     rates = (total.rate(outcome) for outcome in ("success", "collision", "joint_limit"))
     print(f"| {name} | {' | '.join(f'{rate:.3f}' for rate in rates)} | {legal:.3f} |", flush=True)

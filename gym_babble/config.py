@@ -25,8 +25,8 @@ from gym_babble.errors import ConfigError
 __all__ = [
     "Arm",
     "Body",
-    "BodyLike",
     "Config",
+    "ConfigLike",
     "Contact",
     "Cylinder",
     "EyeConfig",
@@ -361,29 +361,29 @@ class Config:
         return json.dumps(asdict(self))
 
 
-BodyLike: TypeAlias = "str | Path | Mapping[str, Any] | Config"
-"""What `body=` takes: a profile's name, a file's path, a dict of differences, or a `Config`."""
+ConfigLike: TypeAlias = "str | Path | Mapping[str, Any] | Config"
+"""What `config=` takes: a profile's name, a file's path, a dict of differences, or a `Config`."""
 
 
-def config_json(body: BodyLike) -> str:
-    """The complete, checked config for what `body=` takes, as JSON.
+def config_json(config: ConfigLike) -> str:
+    """The complete, checked config for what `config=` takes, as JSON.
 
     Raises:
         ConfigError: A name, field or value is not one there is.
     """
-    if isinstance(body, Config | Mapping):
+    if isinstance(config, Config | Mapping):
         try:
-            text = body.to_json() if isinstance(body, Config) else json.dumps(dict(body))
+            text = config.to_json() if isinstance(config, Config) else json.dumps(dict(config))
         except (TypeError, ValueError) as error:
             raise ConfigError(f"config: {error}") from error
         return _core.complete_config(text)
-    if isinstance(body, Path):
-        return _core.load_config(body)
-    if isinstance(body, str):
-        is_file = body.endswith((".toml", ".json"))
-        return _core.load_config(body) if is_file else _core.profile_config(body)
+    if isinstance(config, Path):
+        return _core.load_config(config)
+    if isinstance(config, str):
+        is_file = config.endswith((".toml", ".json"))
+        return _core.load_config(config) if is_file else _core.profile_config(config)
     raise ConfigError(
-        f"body is a {type(body).__name__}; it must be a profile's name, a path, a dict or a Config"
+        f"config is a {type(config).__name__}, not a profile's name, a path, a dict or a Config"
     )
 
 

@@ -12,8 +12,10 @@ from gym_babble.envs import BabbleGraspEnv, BabbleReachEnv
 class Ours:
     """Links of a robot that all turn about the vertical."""
 
-    def __init__(self, task, body):
-        self.core = (BabbleReachEnv if task == "reach" else BabbleGraspEnv)(body=body).choices.task
+    def __init__(self, task, config):
+        self.core = (BabbleReachEnv if task == "reach" else BabbleGraspEnv)(
+            config=config
+        ).choices.task
         self.links = json.loads(self.core.robot())
         self.low, self.high = np.array([link["range"] for link in self.links]).T
         self.sense = np.array([-1 if link["clockwise"] else 1 for link in self.links])

@@ -35,7 +35,7 @@ FORMS = (
     {"obs": "senses", "reward": "sparse", "max_episode_steps": 25},
     {"obs": "goal", "reward": "sparse"},
 )
-BODIES: tuple[Any, ...] = ("paper", "icub")
+CONFIGS: tuple[Any, ...] = ("paper", "icub")
 
 
 def forms(task: str) -> list[tuple[dict[str, Any], float]]:
@@ -52,15 +52,15 @@ def forms(task: str) -> list[tuple[dict[str, Any], float]]:
             {"region": "full", "any_diameter_between": True},
         )
     found = [
-        ({**form, **more, "control": control, "body": body}, share)
-        for form, more, (control, share), body in product(FORMS, extra, controls, BODIES)
+        ({**form, **more, "control": control, "config": config}, share)
+        for form, more, (control, share), config in product(FORMS, extra, controls, CONFIGS)
     ]
     # Slower ones: each image is drawn, and rapier has its own state.
     found.append(({"obs": "retina", "retina_size": 36}, 0.01))
     if task == "grasp":
         rapier = {"body": {"engine": "rapier"}}
         independent = {"body": {"grip": {"fingers": "independent"}}}
-        found += [({**FORMS[0], "body": rapier}, 0.2), ({**FORMS[0], "body": independent}, 0.2)]
+        found += [({**FORMS[0], "config": rapier}, 0.2), ({**FORMS[0], "config": independent}, 0.2)]
     return found
 
 

@@ -147,8 +147,8 @@ def test_saved_agents_come_back(learnt, tmp_path):
 
 
 def test_an_agent_keeps_the_body_it_learnt_on(tmp_path):
-    body = {"profile": "icub", "reach": {"movement_s": 5.0}}
-    HebbBabbling(BabbleReachEnv(control="pattern", body=body)).learn(20).save(tmp_path / "a")
+    config = {"profile": "icub", "reach": {"movement_s": 5.0}}
+    HebbBabbling(BabbleReachEnv(control="pattern", config=config)).learn(20).save(tmp_path / "a")
     again = HebbBabbling.load(tmp_path / "a")
     config = json.loads(again._choices.task.config())
     assert (config["profile"], config["reach"]["movement_s"]) == ("icub", 5.0)

@@ -409,7 +409,7 @@ def test_broken_and_foreign_states_are_refused(task, control):
     env = kind(control=control)
     env.reset(seed=0)
     before, good = env.state_hash(), env.get_state()
-    foreign = kind(control=control, body="icub")
+    foreign = kind(control=control, config="icub")
     foreign.reset(seed=0)
     broken = [b"", b"state", good[:4], good[: len(good) // 2], good[:-1], good + b"\0"]
     broken += [foreign.get_state(), kind(control=control, reward="sparse").get_state()]
@@ -461,8 +461,8 @@ def test_goals_of_a_wrong_shape_are_refused(task):
     [
         (export_mjcf, {"task": "walk"}, ConfigError, "task = 'walk' is not one of reach, grasp"),
         (export_urdf, {"task": "walk"}, ConfigError, "task = 'walk' is not one of reach, grasp"),
-        (export_urdf, {"body": "nobody"}, ConfigError, "nobody"),
-        (export_mjcf, {"body": {"arm": 1}}, ConfigError, "arm"),
+        (export_urdf, {"config": "nobody"}, ConfigError, "nobody"),
+        (export_mjcf, {"config": {"body": {"arm": 1}}}, ConfigError, "arm"),
         (export_mjcf, {"timestep": 0}, ConfigError, "timestep = 0 is not a number above 0"),
         (export_mjcf, {"timestep": 0.051}, ConfigError, "at most 0.05 s"),
         (export_mjcf, {"timestep": NAN}, ConfigError, "timestep = nan"),

@@ -130,10 +130,10 @@ def test_mujoco_steps_the_robot_that_we_step(degrees):
     """Twin and ours are of one config; each of its joints has a muscle, and the hand reflexes."""
     theirs = CASES[f"mujoco-held-{degrees}"].arguments
     config = json.loads(CASES[f"physics-held-{degrees}"].arguments["config"])
-    assert theirs["model"] == gym_babble.export_mjcf(body=config, options={"diameter": 0.05})
+    assert theirs["model"] == gym_babble.export_mjcf(config=config, options={"diameter": 0.05})
     root = ET.fromstring(theirs["model"])  # noqa: S314 - our own
     assert len(root.findall("actuator/position")) == degrees
-    env = BabbleGraspVectorEnv(1, body=config)
+    env = BabbleGraspVectorEnv(1, config=config)
     assert [theirs["reflex"][digit] for digit in ("thumb", "fingers")] == list(env.choices.reflex)
 
 

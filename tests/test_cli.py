@@ -55,7 +55,7 @@ def run_json(run):
 @pytest.fixture(scope="module")
 def agent_file(tmp_path_factory):
     path = tmp_path_factory.mktemp("agents") / "icub.safetensors"
-    env = gym.make("BabbleReachPattern-v0", body="icub")
+    env = gym.make("BabbleReachPattern-v0", config="icub")
     HebbBabbling(env, seed=1).learn(500).save(path)
     return path
 
@@ -63,7 +63,7 @@ def agent_file(tmp_path_factory):
 @pytest.fixture(scope="module")
 def grasping_file(tmp_path_factory):
     path = tmp_path_factory.mktemp("agents") / "grasping.safetensors"
-    HebbGrasping(gym.make("BabbleGrasp-v0", body="icub"), seed=1).learn(50).save(path)
+    HebbGrasping(gym.make("BabbleGrasp-v0", config="icub"), seed=1).learn(50).save(path)
     return path
 
 
@@ -124,8 +124,8 @@ def test_info_tells_the_spec(run, run_json, row):
         ([], export_mjcf("grasp")),
         (["--format", "urdf"], export_urdf("grasp")),
         (
-            ["--task", "reach", "--body", "icub", "--seed", 3],
-            export_mjcf("reach", body="icub", seed=3),
+            ["--task", "reach", "--config", "icub", "--seed", 3],
+            export_mjcf("reach", config="icub", seed=3),
         ),
         (["--timestep", 0.002], export_mjcf("grasp", timestep=0.002)),
     ],
@@ -177,8 +177,8 @@ def test_babble_saves_an_agent_of_grasping_that_evaluate_tests(run, run_json, tm
 
 def test_an_agent_of_grasping_acts_on_the_body_it_learnt_on(run_json, grasping_file):
     own = run_json("evaluate", grasping_file, "--cases", 12)
-    assert own == run_json("evaluate", grasping_file, "--cases", 12, "--body", "icub")
-    assert own != run_json("evaluate", grasping_file, "--cases", 12, "--body", "paper")
+    assert own == run_json("evaluate", grasping_file, "--cases", 12, "--config", "icub")
+    assert own != run_json("evaluate", grasping_file, "--cases", 12, "--config", "paper")
 
 
 @pytest.mark.parametrize(("name", "held"), [("scripted", 6), ("random", 0)])
@@ -201,8 +201,8 @@ def test_an_agent_of_the_other_task_is_refused(run, agent_file, grasping_file, e
 
 def test_a_saved_agent_is_tested_on_the_body_it_learnt_on(run_json, agent_file):
     own = run_json("evaluate", agent_file, "--cases", 100)
-    assert own == run_json("evaluate", agent_file, "--cases", 100, "--body", "icub")
-    assert own != run_json("evaluate", agent_file, "--cases", 100, "--body", "paper")
+    assert own == run_json("evaluate", agent_file, "--cases", 100, "--config", "icub")
+    assert own != run_json("evaluate", agent_file, "--cases", 100, "--config", "paper")
 
 
 @pytest.mark.parametrize("name", ["random", "scripted", "oracle"])
@@ -275,7 +275,7 @@ def test_compare_writes_a_report_of_grasping(run_json, monkeypatch, tmp_path):
     assert page.count('src="data:image/png;base64,') == 2
     assert '<a href="../index.html">' in page
     assert "compare --task grasp" in page
-    assert "--babbles 50 --body paper --other-report ../index.html" in page
+    assert "--babbles 50 --config paper --other-report ../index.html" in page
     assert "examples/ppo_study.py --task grasp" in page  # Where the stored row is from.
     assert "http://" not in page
     assert "https://" not in page
@@ -367,8 +367,8 @@ def test_doctor(run, run_json):
     ("words", "said"),
     [
         (["info", "BabbleReach-v9"], "BabbleReach-v0"),
-        (["info", "BabbleReach-v0", "--body", "octopus"], "octopus"),
-        (["info", "BabbleReach-v0", "--body", "none.toml"], "none.toml"),
+        (["info", "BabbleReach-v0", "--config", "octopus"], "octopus"),
+        (["info", "BabbleReach-v0", "--config", "none.toml"], "none.toml"),
         (["evaluate", "nobody"], "nobody"),
         (["evaluate", "random", "--env-id", "Pendulum-v1"], "Pendulum-v1"),
         (["evaluate", "oracle", "--env-id", "BabbleGrasp-v0"], "reaching"),
@@ -393,7 +393,7 @@ def test_doctor(run, run_json):
         (["render", "random", "--out", "film", "--format", "avi"], "--format"),
         (["export", "--format", "sdf"], "--format"),
         (["export", "--timestep", "0"], "timestep = 0.0"),
-        (["export", "--body", "thin.toml"], "thin.toml"),
+        (["export", "--config", "thin.toml"], "thin.toml"),
         (["export", "--out", "no/robot.xml"], "no/robot.xml"),
         (["dance"], "dance"),
     ],

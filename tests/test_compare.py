@@ -182,7 +182,7 @@ def test_the_study_is_a_whole_one_of_todays_preset():
 
 
 def test_a_study_of_another_body_is_left_out():
-    found = compare(["ppo-stored"], Settings(task="grasp", body="icub", cases=1))
+    found = compare(["ppo-stored"], Settings(task="grasp", config="icub", cases=1))
     assert not found.results
     assert "paper" in found.skipped["ppo-stored"]
 
@@ -217,7 +217,7 @@ def test_bad_settings_are_refused():
     with pytest.raises(ConfigError, match="nobody"):
         compare(["nobody"], SMALL)
     with pytest.raises(ConfigError, match="octopus"):
-        compare(["random"], Settings(body="octopus"))
+        compare(["random"], Settings(config="octopus"))
     with pytest.raises(ConfigError, match="seeds"):
         compare(["random"], Settings(seeds=0))
     with pytest.raises(ConfigError, match="babbles"):

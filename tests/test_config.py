@@ -125,11 +125,11 @@ def test_file_dict_and_dataclass_are_one_config(tmp_path):
         reach=replace(icub.reach, movement_s=5.0, distance_m=(0.1, 0.15)),
     )
     bodies = [changes, tmp_path / "body.json", str(tmp_path / "body.toml"), made]
-    assert len({config_json(body) for body in bodies}) == 1
+    assert len({config_json(config) for config in bodies}) == 1
     assert Config.load(tmp_path / "body.toml") == made
     firsts = []
-    for body in bodies:
-        env = BabbleReachEnv(body=body)
+    for config in bodies:
+        env = BabbleReachEnv(config=config)
         env.reset(seed=0)
         firsts.append(env.scenario)
     assert firsts.count(firsts[0]) == 4
@@ -170,18 +170,18 @@ def test_file_dict_and_dataclass_are_one_config_of_grasping(tmp_path):
             palm_side=replace(paper.grasp.palm_side, radius_m=(0.2, 0.25)),
         ),
     )
-    assert len({config_json(body) for body in (path, changes, made)}) == 1
+    assert len({config_json(config) for config in (path, changes, made)}) == 1
     assert Config.load(path) == made
     seen = []
-    for body in (path, changes, made):
-        env = BabbleGraspEnv(body=body)
+    for config in (path, changes, made):
+        env = BabbleGraspEnv(config=config)
         env.reset(seed=0)
         seen.append((env.scenario, env.state_hash()))
     assert seen.count(seen[0]) == 3
     assert seen[0][0]["diameter"] in made.grasp.diameters_m
     # The argument is the same number.
     changes["grasp"].pop("diameters_m")
-    env = BabbleGraspEnv(body=changes, diameters=made.grasp.diameters_m)
+    env = BabbleGraspEnv(config=changes, diameters=made.grasp.diameters_m)
     env.reset(seed=0)
     assert (env.scenario, env.state_hash()) == seen[0]
 
@@ -193,7 +193,7 @@ def test_numbers_of_one_task_change_no_state_of_the_other():
         (BabbleGraspEnv, "grasp", "reach"),
     ):
         plain, other, changed = (
-            kind(body={name: {"delta_posture_deg": 4.0}} if name else {})
+            kind(config={name: {"delta_posture_deg": 4.0}} if name else {})
             for name in (None, foreign, own)
         )
         for env in (plain, other, changed):
@@ -203,10 +203,10 @@ def test_numbers_of_one_task_change_no_state_of_the_other():
 
 
 def test_a_config_reaches_the_simulation():
-    env = BabbleReachEnv(body={"reach": {"control_period_s": 0.1}})
+    env = BabbleReachEnv(config={"reach": {"control_period_s": 0.1}})
     assert env.metadata["render_fps"] == 10
     assert BabbleReachEnv.metadata["render_fps"] == 20
-    stiff = BabbleReachEnv(body={"body": {"muscles": {"kp": 200.0}}}, control="posture")
+    stiff = BabbleReachEnv(config={"body": {"muscles": {"kp": 200.0}}}, control="posture")
     soft = BabbleReachEnv(control="posture")
     options = {"start": (0.1, 0.2), "target": (0.2, 0.2), "obstacle": None}
     moved = []
@@ -235,10 +235,10 @@ UNKNOWN = [
 ]
 
 
-@pytest.mark.parametrize(("body", "named"), UNKNOWN, ids=lambda x: str(x)[:30])
-def test_an_unknown_field_is_named_at_each_level(body, named):
+@pytest.mark.parametrize(("config", "named"), UNKNOWN, ids=lambda x: str(x)[:30])
+def test_an_unknown_field_is_named_at_each_level(config, named):
     with pytest.raises(ConfigError, match=named):
-        config_json(body)
+        config_json(config)
 
 
 OUT_OF_BOUNDS = [
@@ -296,20 +296,20 @@ OUT_OF_BOUNDS = [
 ]
 
 
-@pytest.mark.parametrize(("body", "named"), OUT_OF_BOUNDS, ids=lambda x: str(x)[:50])
-def test_what_cannot_be_is_refused_by_name(body, named):
+@pytest.mark.parametrize(("config", "named"), OUT_OF_BOUNDS, ids=lambda x: str(x)[:50])
+def test_what_cannot_be_is_refused_by_name(config, named):
     with pytest.raises(ConfigError, match=named) as caught:
-        BabbleReachEnv(body=body)
+        BabbleReachEnv(config=config)
     with pytest.raises(ConfigError, match=named):
-        BabbleGraspEnv(body=body)
+        BabbleGraspEnv(config=config)
     assert isinstance(caught.value, ValueError)
     assert isinstance(caught.value, BabbleError)
 
 
-@pytest.mark.parametrize("body", [None, 3, ["paper"], b"paper", Arm(), "Paper", "", object])
-def test_a_body_of_another_kind_is_refused(body):
-    with pytest.raises(ConfigError, match="body"):
-        BabbleReachEnv(body=body)
+@pytest.mark.parametrize("config", [None, 3, ["paper"], b"paper", Arm(), "Paper", "", object])
+def test_a_config_of_another_kind_is_refused(config):
+    with pytest.raises(ConfigError, match="config"):
+        BabbleReachEnv(config=config)
 
 
 def test_a_dataclass_with_wrong_values_is_refused():
@@ -319,7 +319,7 @@ def test_a_dataclass_with_wrong_values_is_refused():
         replace(Config(), body=replace(Config().body, arm=Arm(upper_arm_m={1, 2}))),
     ):
         with pytest.raises(ConfigError):
-            BabbleReachEnv(body=broken)
+            BabbleReachEnv(config=broken)
 
 
 def test_broken_files_are_refused_by_their_path(tmp_path):
@@ -334,35 +334,35 @@ def test_broken_files_are_refused_by_their_path(tmp_path):
         path = tmp_path / name
         path.write_bytes(content)
         with pytest.raises(ConfigError, match=name.replace(".", r"\.")):
-            BabbleReachEnv(body=path)
+            BabbleReachEnv(config=path)
     with pytest.raises(ConfigError, match="missing"):
-        BabbleReachEnv(body="missing.toml")
+        BabbleReachEnv(config="missing.toml")
     with pytest.raises(ConfigError):
-        BabbleReachEnv(body=tmp_path)
+        BabbleReachEnv(config=tmp_path)
 
 
 def test_an_eye_that_cannot_see_the_arms_plane_says_so():
-    env = BabbleReachEnv(body={"body": {"eye": {"position_m": [0, 0, -1]}}})
+    env = BabbleReachEnv(config={"body": {"eye": {"position_m": [0, 0, -1]}}})
     with pytest.raises(ConfigError, match="no red pixel"):
         env.reset(seed=0)
 
 
 def test_a_config_with_no_room_for_a_case_says_so():
-    body = {
+    config = {
         "body": {"obstacle": {"radius_m": 0.124}},
         "reach": {"distance_m": [0.08, 0.0801]},
     }
-    env = BabbleReachEnv(body=body)
+    env = BabbleReachEnv(config=config)
     with pytest.raises(BabbleError, match="no legal movement"):
         env.reset(seed=0)
     with pytest.raises(BabbleError, match="no legal movement"):
-        scenarios("table1", 1, body=body)
+        scenarios("table1", 1, config=config)
 
 
 def test_a_config_with_no_room_for_a_grasp_says_so():
     # All objects lie in the shoulder.
     region = {"radius_m": [0.01, 0.011], "polar_deg": [-5, 5]}
-    env = BabbleGraspEnv(body={"grasp": {"palm_side": region}})
+    env = BabbleGraspEnv(config={"grasp": {"palm_side": region}})
     with pytest.raises(BabbleError, match=r"no case in 10000 tries.*object"):
         env.reset(seed=0)
 

@@ -72,15 +72,15 @@ ACTIONS = st.lists(st.tuples(*[EXTREMES] * 4), min_size=1, max_size=60)
 @given(
     actions=ACTIONS,
     seed=st.integers(0, 10_000),
-    body=st.sampled_from(["paper", "icub"]),
+    config=st.sampled_from(["paper", "icub"]),
     region=st.sampled_from(REGIONS),
 )
-def test_spaces_contain_every_observation(of, actions, seed, body, region):
+def test_spaces_contain_every_observation(of, actions, seed, config, region):
     task, control = of
     where = {"region": region} if task == "grasp" else {}
     for obs in ("flat", "goal"):
         reward = "sparse" if obs == "goal" else "progress"
-        env = TASKS[task](obs=obs, control=control, reward=reward, body=body, **where)
+        env = TASKS[task](obs=obs, control=control, reward=reward, config=config, **where)
         observation, _ = env.reset(seed=seed)
         assert observation in env.observation_space
         for action in actions:

@@ -20,7 +20,7 @@ CONTROLS = CONTROLS_OF["grasp"]
 CASE = {"start": (-0.7, 0.9), "object": (0.0, 0.2), "diameter": 0.06, "obstacle": None}
 STAY = np.zeros(4, np.float32)
 SPREAD = np.array([0.0, 0.0, -1.0, -1.0], np.float32)
-BODIES = {
+CONFIGS = {
     "paper": "paper",
     "icub": "icub",
     "four fingers": {"body": {"grip": {"fingers": "independent"}}},
@@ -36,10 +36,10 @@ def terms(seen, name):
 # What a grasp gives.
 
 
-@pytest.mark.parametrize("body", BODIES.values(), ids=BODIES.keys())
+@pytest.mark.parametrize("config", CONFIGS.values(), ids=CONFIGS.keys())
 @pytest.mark.parametrize("diameter", [0.024, 0.04, 0.06])
-def test_a_hand_that_closes_around_the_object_succeeds(body, diameter):
-    env = BabbleGraspEnv(control="posture", body=body)
+def test_a_hand_that_closes_around_the_object_succeeds(config, diameter):
+    env = BabbleGraspEnv(control="posture", config=config)
     seen = grasp(env, seed=0, options={**CASE, "start": (-0.15, 1.2), "diameter": diameter})
     _, reward, terminated, truncated, info = seen[-1]
     assert (terminated, truncated, info["outcome"]) == (True, False, "success")
@@ -202,7 +202,7 @@ def test_letting_go_when_the_support_is_gone_loses_the_object():
 
 
 def test_an_object_that_is_struck_out_of_reach_is_lost():
-    env = BabbleGraspEnv(control="torque", body=SLIPPERY, region="full")
+    env = BabbleGraspEnv(control="torque", config=SLIPPERY, region="full")
     case = {"start": (0.2, 0.3), "object": (0.15, 0.27), "diameter": 0.06}
     _, _, terminated, truncated, info = play(env, [1, 0, 0, 0], case)
     assert (terminated, truncated, info["outcome"]) == (True, False, "lost")
@@ -302,11 +302,11 @@ def polar(point):
     return math.hypot(*point), math.degrees(math.atan2(point[1], point[0]))
 
 
-@pytest.mark.parametrize("body", ["paper", "icub"])
+@pytest.mark.parametrize("config", ["paper", "icub"])
 @pytest.mark.parametrize("region", REGIONS)
-def test_cases_lie_in_their_region_and_can_be_grasped(body, region):
-    env = BabbleGraspEnv(body=body, region=region)
-    numbers = getattr(Config.profile_named(body).grasp, region)
+def test_cases_lie_in_their_region_and_can_be_grasped(config, region):
+    env = BabbleGraspEnv(config=config, region=region)
+    numbers = getattr(Config.profile_named(config).grasp, region)
     lower, upper = np.degrees(env.choices.ranges[:2].T)
     starts = np.clip([numbers.shoulder_deg, numbers.elbow_deg], lower[:, None], upper[:, None])
     env.reset(seed=0)
@@ -346,10 +346,10 @@ def test_diameters_are_drawn_from_the_list_or_from_all_between():
     assert 0.02 <= between.min() < 0.03
     assert 0.05 < between.max() <= 0.06
     config = {"grasp": {"diameters_m": [0.06, 0.02], "any_diameter_between": True}}
-    assert_same(drawn_diameters(body=config), between)
+    assert_same(drawn_diameters(config=config), between)
     # The list alone replaces the config's list, not how it is drawn from.
     config["grasp"]["diameters_m"] = [0.1]
-    assert_same(drawn_diameters(body=config, diameters=[0.06, 0.02]), between)
+    assert_same(drawn_diameters(config=config, diameters=[0.06, 0.02]), between)
 
 
 def test_what_is_given_of_a_case_is_played_and_the_rest_is_drawn():
@@ -619,7 +619,7 @@ def test_a_configs_numbers_reach_the_simulation(tmp_path, text, outcome, sooner)
     assert plain[-1][4]["outcome"] == "success"
     path = tmp_path / "changed.toml"
     path.write_text(text)
-    seen = grasp(BabbleGraspEnv(control="posture", body=path), options=CASE)
+    seen = grasp(BabbleGraspEnv(control="posture", config=path), options=CASE)
     assert seen[-1][4]["outcome"] == outcome
     assert outcome == "lost" or len(seen) - len(plain) <= sooner
 
@@ -632,15 +632,15 @@ def test_a_configs_numbers_reach_choices_rewards_and_spaces():
         "touch_max_n": 1.0,
     }
     muscles = {"grip": {"hand_muscles": {"torque_max": 2.0}, "reflex_deg": [10, 20]}}
-    body = {"grasp": numbers, "body": muscles}
-    env = BabbleGraspEnv(body=body, obs="goal", reward="sparse")
+    config = {"grasp": numbers, "body": muscles}
+    env = BabbleGraspEnv(config=config, obs="goal", reward="sparse")
     assert env.choices.delta_posture == pytest.approx(math.radians(9))
     assert env.choices.reflex == pytest.approx(np.radians([10, 20]))
     assert env.metadata["render_fps"] == 10
     assert env.compute_reward(np.zeros(2), np.array([0.09, 0]), {}) == 0
-    torque = BabbleGraspEnv(body=body, control="torque").observation_space["stretch"]
+    torque = BabbleGraspEnv(config=config, control="torque").observation_space["stretch"]
     assert torque.high[2:] == pytest.approx([2 / 0.5] * 2)
-    soft = BabbleGraspEnv(body={"grasp": {"touch_max_n": 1.0}}, control="posture")
+    soft = BabbleGraspEnv(config={"grasp": {"touch_max_n": 1.0}}, control="posture")
     soft = grasp(soft, options=CASE)
     hard = grasp(BabbleGraspEnv(control="posture"), options=CASE)
     assert soft[-1][0]["touch"][2] == pytest.approx(min(1, 20 * hard[-1][0]["touch"][2]))

@@ -39,8 +39,8 @@ def ours(robot):
 
 @functools.cache
 def exported(robot, form):
-    task, body = ROBOTS[robot]
-    text = (export_mjcf if form == "mjcf" else export_urdf)(task, body=body)
+    task, config = ROBOTS[robot]
+    text = (export_mjcf if form == "mjcf" else export_urdf)(task, config=config)
     return mujoco.MjModel.from_xml_string(text)
 
 
@@ -190,8 +190,8 @@ def test_urdf_moves_as_mjcf(robot, shares):
 
 @each_robot
 def test_urdf_is_one_tree_that_damps(robot):
-    task, body = ROBOTS[robot]
-    root = ET.fromstring(export_urdf(task, body=body))  # noqa: S314 - our own text
+    task, config = ROBOTS[robot]
+    root = ET.fromstring(export_urdf(task, config=config))  # noqa: S314 - our own text
     links = [link.get("name") for link in root.iter("link")]
     joints = root.findall("joint")
     assert len(set(links)) == len(links) == len(joints) + 1
@@ -242,9 +242,9 @@ def test_the_case_is_the_environments():
 
 
 def test_reachings_case_is_the_environments():
-    env = BabbleReachEnv(body="icub")
+    env = BabbleReachEnv(config="icub")
     env.reset(seed=5)
-    model = mujoco.MjModel.from_xml_string(export_mjcf("reach", body="icub", seed=5))
+    model = mujoco.MjModel.from_xml_string(export_mjcf("reach", config="icub", seed=5))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     mujoco.mj_forward(model, data)
@@ -260,7 +260,7 @@ def test_only_what_touches_here_touches_there():
     friction = {"friction": 0.7, "support_friction": 0.4}
     model = mujoco.MjModel.from_xml_string(
         export_mjcf(
-            "grasp", body={"body": {"object": friction}}, options={"obstacle": (-0.1, 0.3, 0.02)}
+            "grasp", config={"body": {"object": friction}}, options={"obstacle": (-0.1, 0.3, 0.02)}
         )
     )
     # Of two frictions MuJoCo takes the larger, or that of the higher priority.

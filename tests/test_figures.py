@@ -80,10 +80,10 @@ def test_switched_exchanges_start_and_obstacle():
     assert switched(other) == case
 
 
-@pytest.mark.parametrize("body", ["paper", "icub"])
-def test_every_start_of_fig4_has_a_case_or_is_marked(body):
-    cases = scenarios("fig4", body=body)
-    missing = starts_without_case(body)
+@pytest.mark.parametrize("config", ["paper", "icub"])
+def test_every_start_of_fig4_has_a_case_or_is_marked(config):
+    cases = scenarios("fig4", config=config)
+    missing = starts_without_case(config)
     assert len(cases) + len(missing) == 4 * 36
     starts = {tuple(np.round(case["start"], 9)) for case in cases}
     assert not starts & {tuple(np.round(start, 9)) for start in missing}

@@ -28,15 +28,15 @@ HEAVY = {
 class Pair:
     """An environment under `posture` control, and its robot in MuJoCo, from the same start."""
 
-    def __init__(self, task, body, options, timestep=None):
-        given = {"control": "posture", "body": body, "max_episode_steps": 10_000}
+    def __init__(self, task, config, options, timestep=None):
+        given = {"control": "posture", "config": config, "max_episode_steps": 10_000}
         if task == "reach":
             # In the goal form success ends nothing.
             self.env = BabbleReachEnv(obs="goal", reward="sparse", **given)
         else:
             self.env = BabbleGraspEnv(obs="flat", **given)
         self.observation, _ = self.env.reset(seed=0, options=options)
-        text = export_mjcf(task, body=body, seed=0, options=options, timestep=timestep)
+        text = export_mjcf(task, config=config, seed=0, options=options, timestep=timestep)
         self.model = mujoco.MjModel.from_xml_string(text)
         self.data = mujoco.MjData(self.model)
         mujoco.mj_resetDataKeyframe(self.model, self.data, 0)
@@ -138,7 +138,7 @@ def balance(fingers, timestep):
 
     Without friction, which would remember the way there, one balance is possible.
     """
-    body = {
+    config = {
         "body": {"object": SMOOTH, "grip": {"fingers": fingers}},
         # The support stays; the sense of touch goes up to 100 N.
         "grasp": {"hold_steps": 1000, "touch_max_n": 100.0},
@@ -148,7 +148,7 @@ def balance(fingers, timestep):
     elbow = 0.15 * np.array([np.cos(q1), np.sin(q1)])
     place = elbow + 0.17 * along + (0.01 + diameter / 2 + 0.0055) * across
     options = {"start": (q1, q2), "object": tuple(place), "diameter": diameter}
-    pair = Pair("grasp", body, options, timestep)
+    pair = Pair("grasp", config, options, timestep)
     squeeze = 2 * (np.array([q1, q2, 1.0, 1.4]) - pair.low) / (pair.high - pair.low) - 1
     for _ in range(round(12 / CONTROL_S)):
         pair.step(squeeze)

@@ -39,8 +39,8 @@ def test_table1_is_the_same_for_everyone():
 
 
 def test_cases_keep_the_configs_geometry():
-    for body, radius, (near, far) in (("paper", 0.035, (0.08, 0.25)), ("icub", 0.02, (0.1, 0.2))):
-        for case in scenarios("table1", 50, body=body):
+    for config, radius, (near, far) in (("paper", 0.035, (0.08, 0.25)), ("icub", 0.02, (0.1, 0.2))):
+        for case in scenarios("table1", 50, config=config):
             start, target = np.array(case["start"]), np.array(case["target"])
             assert near <= np.linalg.norm(start - target) <= far
             assert case["obstacle"] == pytest.approx((*((start + target) / 2), radius))
@@ -88,7 +88,7 @@ def test_options_beside_a_scenario_replace_its_parts():
         ({"protocol": "table1", "n": -3}, "n = -3"),
         ({"protocol": "table1", "n": 2, "split": "train"}, "train"),
         ({"protocol": "table1", "n": 2, "threads": 0}, "threads"),
-        ({"protocol": "table1", "n": 2, "body": "tall"}, "tall"),
+        ({"protocol": "table1", "n": 2, "config": "tall"}, "tall"),
         ({"protocol": "table1", "n": 2, "seed": -1}, "seed"),
         ({"protocol": "table1", "n": 2, "seed": 2**64}, "seed"),
     ],

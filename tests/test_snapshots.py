@@ -30,18 +30,18 @@ def kinds(draw: st.DrawFn) -> tuple[str, dict[str, Any]]:
     env_id, choices = draw(st.sampled_from(ALL_CHOICES))
     task = task_of(env_id)
     engine = draw(st.sampled_from(["tree", "tree", "tree", "rapier"]))
-    body: dict[str, Any] = {"profile": draw(st.sampled_from(["paper", "icub"]))}
+    config: dict[str, Any] = {"profile": draw(st.sampled_from(["paper", "icub"]))}
     extra: dict[str, Any] = {"max_episode_steps": draw(st.integers(1, 60))}
     if task == "grasp":
         extra["enclosure_reflex"] = draw(st.booleans())
         extra["any_diameter_between"] = draw(st.booleans())
-        body["body"] = {"engine": engine}
+        config["body"] = {"engine": engine}
     elif choices["obs"] != "goal":
         extra["settled"] = draw(st.booleans())
     if choices["control"] == "pattern":
         del extra["max_episode_steps"]
     render = draw(st.sampled_from([None, "rgb_array", "rgb_array_list"]))
-    return task, {**choices, **extra, "body": body, "render_mode": render, "retina_size": 36}
+    return task, {**choices, **extra, "config": config, "render_mode": render, "retina_size": 36}
 
 
 def actions_for(env: Any, n: int, seed: int) -> list[Any]:
@@ -107,7 +107,7 @@ def test_another_process_continues_a_state_to_the_bit():
     # In mid-contact with either engine, and in each control of both tasks.
     kinds = [(task, {"control": control}) for task, control in EACH_CONTROL]
     kinds += [
-        ("grasp", {"enclosure_reflex": True, "body": {"body": {"engine": engine}}})
+        ("grasp", {"enclosure_reflex": True, "config": {"body": {"engine": engine}}})
         for engine in ("tree", "rapier")
     ]
     asked, expected, touched = [], [], 0

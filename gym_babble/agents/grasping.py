@@ -248,7 +248,9 @@ class HebbGrasping(GraspAgent):
         except ValueError as error:
             raise AgentFileError(f"{path}: {error}") from error
         agent = cls.__new__(cls)
-        GraspAgent.__init__(agent, BabbleGraspEnv(body=json.loads(config)) if env is None else env)
+        GraspAgent.__init__(
+            agent, BabbleGraspEnv(config=json.loads(config)) if env is None else env
+        )
         agent._hebb = core  # noqa: SLF001 - its own
         return agent
 

@@ -182,4 +182,4 @@ class HebbBabbling(MovementAgent):
 
 
 def _pattern_env(config: str) -> Any:
-    return BabbleReachEnv(control="pattern", reward="sparse", body=json.loads(config))
+    return BabbleReachEnv(control="pattern", reward="sparse", config=json.loads(config))

@@ -27,7 +27,7 @@ from gym_babble.study.tasks import REACH, task_of
 
 if TYPE_CHECKING:
     from gym_babble.agents.base import Agent
-    from gym_babble.config import BodyLike
+    from gym_babble.config import ConfigLike
 
 __all__ = ["REFERENCES", "LoadedAgent", "load_agent"]
 
@@ -45,12 +45,12 @@ class LoadedAgent:
 
     agent: Agent
     env_id: str
-    body: BodyLike
+    config: ConfigLike
     env_kwargs: dict[str, Any] = field(default_factory=dict)
 
 
 def load_agent(
-    name: str, *, env_id: str | None = None, body: BodyLike | None = None, seed: int = 0
+    name: str, *, env_id: str | None = None, config: ConfigLike | None = None, seed: int = 0
 ) -> LoadedAgent:
     """An agent by name, or from a file.
 
@@ -60,7 +60,7 @@ def load_agent(
             those you trust.
         env_id: Environment to act in; BabbleReachPattern-v0, or BabbleGrasp-v0 for an agent that
             has learnt to grasp, if not given, but a zip needs one.
-        body: Body and task; the one it learnt on, or "paper", if not given.
+        config: Body and task; the one it learnt on, or "paper", if not given.
         seed: Seed of the random agent.
 
     Raises:
@@ -71,17 +71,17 @@ def load_agent(
     if env_id is not None:
         task_of(env_id)
     if name in REFERENCES:
-        return _reference(name, env_id or PATTERN, "paper" if body is None else body, seed)
+        return _reference(name, env_id or PATTERN, "paper" if config is None else config, seed)
     path = Path(name)
     if not path.is_file():
         raise FileNotFoundError(f"{name}: no such file; agents by name are {', '.join(REFERENCES)}")
     if zipfile.is_zipfile(path):
-        return _stable_baselines(path, env_id, "paper" if body is None else body)
-    return _hebb(path, env_id, body)
+        return _stable_baselines(path, env_id, "paper" if config is None else config)
+    return _hebb(path, env_id, config)
 
 
-def _reference(name: str, env_id: str, body: BodyLike, seed: int) -> LoadedAgent:
-    env = gymnasium.make(env_id, body=body)
+def _reference(name: str, env_id: str, config: ConfigLike, seed: int) -> LoadedAgent:
+    env = gymnasium.make(env_id, config=config)
     of_reaching = task_of(env_id) == REACH
     agent: Agent
     if name == "random":
@@ -90,20 +90,20 @@ def _reference(name: str, env_id: str, body: BodyLike, seed: int) -> LoadedAgent
         agent = Scripted(env) if of_reaching else GraspScripted(env)
     else:
         agent = Oracle(env, threads=os.cpu_count() or 1)
-    return LoadedAgent(agent, env_id, body)
+    return LoadedAgent(agent, env_id, config)
 
 
-def _hebb(path: Path, env_id: str | None, body: BodyLike | None) -> LoadedAgent:
+def _hebb(path: Path, env_id: str | None, config: ConfigLike | None) -> LoadedAgent:
     grasps = GRASPING_KEY in path.read_bytes()[:KEY_WITHIN]
     kind: type[HebbBabbling | HebbGrasping] = HebbGrasping if grasps else HebbBabbling
     env_id = env_id or (GRASPING if grasps else PATTERN)
     agent = kind.load(path)
-    if body is None:
-        body = json.loads(agent.choices.task.config())
-    return LoadedAgent(kind.load(path, gymnasium.make(env_id, body=body)), env_id, body)
+    if config is None:
+        config = json.loads(agent.choices.task.config())
+    return LoadedAgent(kind.load(path, gymnasium.make(env_id, config=config)), env_id, config)
 
 
-def _stable_baselines(path: Path, env_id: str | None, body: BodyLike) -> LoadedAgent:
+def _stable_baselines(path: Path, env_id: str | None, config: ConfigLike) -> LoadedAgent:
     if env_id is None:
         raise ConfigError(f"{path}: name the environment it learnt in with --env-id")
     try:
@@ -119,9 +119,9 @@ def _stable_baselines(path: Path, env_id: str | None, body: BodyLike) -> LoadedA
         raise AgentFileError(f"{path}: {error}") from error
     registered = next(row.obs for row in ENVIRONMENTS if row.id == env_id)
     for obs in (registered, "senses", "flat"):
-        space = gymnasium.make(env_id, obs=obs, body=body).observation_space
+        space = gymnasium.make(env_id, obs=obs, config=config).observation_space
         if _shapes(space) == _shapes(model.observation_space):
-            return LoadedAgent(model, env_id, body, {"obs": obs})
+            return LoadedAgent(model, env_id, config, {"obs": obs})
     raise ConfigError(f"{path}: it has learnt from other observations than {env_id} gives")
 
 

@@ -65,7 +65,7 @@ messages = Console(stderr=True)
 
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON document on stdout.")]
 TaskName = Annotated[Literal["reach", "grasp"], typer.Option(help="Task.")]
-BodyName = Annotated[str, typer.Option(help="paper, icub, or a TOML or JSON file.")]
+ConfigName = Annotated[str, typer.Option(help="paper, icub, or a TOML or JSON file.")]
 Seed = Annotated[int, typer.Option(min=0, help="Seed.")]
 Seeds = Annotated[int, typer.Option(min=1, help="How many seeds: 0, 1, ...")]
 Cases = Annotated[int, typer.Option(min=1, help="Tests, of each seed.")]
@@ -84,7 +84,7 @@ EnvId = Annotated[
         "agent that babbled grasping."
     ),
 ]
-OwnBody = Annotated[
+OwnConfig = Annotated[
     str | None, typer.Option(help="paper, icub, or a file; the one it learnt on if not given.")
 ]
 ALL_AGENTS = "; ".join(
@@ -138,13 +138,13 @@ def list_environments(as_json: AsJson = False) -> None:
 @app.command()
 def info(
     env_id: Annotated[str, typer.Argument(metavar="ID", help="As `list` shows it.")],
-    body: BodyName = "paper",
+    config: ConfigName = "paper",
     as_json: AsJson = False,
 ) -> None:
     """Show an environment: senses, action, reward terms, limits."""
     task_of(env_id)
     row = next(row for row in ENVIRONMENTS if row.id == env_id)
-    env: Any = gymnasium.make(env_id, body=body)
+    env: Any = gymnasium.make(env_id, config=config)
     spec = env.unwrapped.choices.spec
     goals = list(spec.goals) if row.obs == "goal" else []
     described = {
@@ -173,20 +173,20 @@ def babble(
     movements: Movements = 20_000,
     babbles: Babbles = 1_000,
     seed: Seed = 0,
-    body: BodyName = "paper",
+    config: ConfigName = "paper",
     quasi_static: QuasiStatic = False,
     as_json: AsJson = False,
 ) -> None:
     """Let an agent babble and learn, and save it."""
     _check_folder_of(file)
     agent: HebbBabbling | HebbGrasping
-    chosen: dict[str, Any] = {"body": body, "seed": seed}
+    chosen: dict[str, Any] = {"config": config, "seed": seed}
     if task == "reach":
-        agent = _learn(variant, movements, seed, body, quasi_static=quasi_static)
+        agent = _learn(variant, movements, seed, config, quasi_static=quasi_static)
         made, good = agent.movements, agent.legal_movements
         chosen = {"variant": variant, **chosen, "quasi_static": quasi_static}
     else:
-        agent = _learn_grasping(babbles, seed, body)
+        agent = _learn_grasping(babbles, seed, config)
         made, good = agent.babbles, agent.kept
     agent.save(file)
     names = TASKS[task]
@@ -208,18 +208,18 @@ def evaluate(
     seed: Seed = 0,
     split: Annotated[Literal["test", "validation"], typer.Option(help="Which cases.")] = "test",
     env_id: EnvId = None,
-    body: OwnBody = None,
+    config: OwnConfig = None,
     as_json: AsJson = False,
 ) -> None:
     """Test an agent on its task's cases: Table I, or objects on the palm's side."""
-    loaded = load_agent(agent, env_id=env_id, body=body, seed=seed)
+    loaded = load_agent(agent, env_id=env_id, config=config, seed=seed)
     task = task_of(loaded.env_id)
-    drawn = scenarios(task.protocol, cases, seed, split=split, body=loaded.body)
+    drawn = scenarios(task.protocol, cases, seed, split=split, config=loaded.config)
     result = run_evaluation(
         loaded.agent,
         loaded.env_id,
         drawn,
-        body=loaded.body,
+        config=loaded.config,
         progress_bar=True,
         **loaded.env_kwargs,
     )
@@ -251,7 +251,7 @@ def compare(
     cases: Cases = 1_000,
     movements: Movements = 20_000,
     babbles: Babbles = 1_000,
-    body: BodyName = "paper",
+    config: ConfigName = "paper",
     as_json: AsJson = False,
 ) -> None:
     """Compare Hebb babbling with PPO, and with agents that need no learning."""
@@ -260,7 +260,7 @@ def compare(
         figures.check_format(report / "figure.svg")  # A missing extra shows now.
     settings = Settings(
         task=task,
-        body=body,
+        config=config,
         seeds=seeds,
         cases=cases,
         movements=movements,
@@ -276,7 +276,7 @@ def compare(
         command += ["--agents", agents] if agents is not None else []
         command += ["--seeds", str(seeds), "--cases", str(cases)]
         many = movements if task == "reach" else babbles
-        command += [f"--{comparison.task.made}", str(many), "--body", body]
+        command += [f"--{comparison.task.made}", str(many), "--config", config]
         command += ["--other-report", other_report] if other_report is not None else []
         written = write_report(comparison, report, shlex.join(command), other_report)
     if as_json:
@@ -301,11 +301,11 @@ def render(
     ] = ("third_person"),
     size: Annotated[int, typer.Option(min=16, max=4096, help="Edge of a picture [pixel].")] = 360,
     env_id: EnvId = None,
-    body: OwnBody = None,
+    config: OwnConfig = None,
 ) -> None:
     """Film an episode of an agent: a contact sheet, and frames, GIF or MP4."""
     _check_folder_of(folder)
-    loaded = load_agent(agent, env_id=env_id, body=body, seed=seed)
+    loaded = load_agent(agent, env_id=env_id, config=config, seed=seed)
     film = record(loaded, seed=seed, camera=camera, size=size)
     _say(f"{film.outcome} after {len(film.frames) - 1} control steps")
     _name_files(save_film(film, folder, kind))
@@ -319,7 +319,7 @@ def export(
         typer.Option("--format", help="mjcf: for MuJoCo, with a case's things; urdf: robot alone."),
     ] = "mjcf",
     task: TaskName = "grasp",
-    body: BodyName = "paper",
+    config: ConfigName = "paper",
     seed: Annotated[int, typer.Option(min=0, help="Seed of the case (mjcf).")] = 0,
     timestep: Annotated[
         float | None,
@@ -331,9 +331,9 @@ def export(
     if file is not None:
         _check_folder_of(file)
     if kind == "mjcf":
-        text = export_mjcf(task, body=body, seed=seed, timestep=timestep)
+        text = export_mjcf(task, config=config, seed=seed, timestep=timestep)
     else:
-        text = export_urdf(task, body=body)
+        text = export_urdf(task, config=config)
     if file is None:
         typer.echo(text, nl=False)
         return
@@ -358,7 +358,7 @@ def reproduce_table1(
     *,
     seeds: Seeds = 5,
     cases: Cases = 1_000,
-    body: BodyName = "paper",
+    config: ConfigName = "paper",
     variant: Variant = "paper",
     control: Annotated[
         Literal["pattern", "delta_posture"], typer.Option(help="Control in the tests.")
@@ -375,7 +375,7 @@ def reproduce_table1(
     table = reproduce.table1(
         seeds=seeds,
         cases=cases,
-        body=body,
+        config=config,
         variant=variant,
         control=control,
         quasi_static=quasi_static,
@@ -390,7 +390,7 @@ def reproduce_table1(
     if as_json:
         _print_json(document)
     else:
-        title = f"Table I: Hebb {variant}, body {body}, {control} control"
+        title = f"Table I: Hebb {variant}, config {config}, {control} control"
         _print(table1_table(document, title))
     _name_files(files)
 
@@ -415,15 +415,15 @@ def reproduce_fig4(
     variant: Variant = "paper",
     movements: Movements = 20_000,
     seed: Seed = 0,
-    body: BodyName = "paper",
+    config: ConfigName = "paper",
 ) -> None:
     """Figure 4: trajectories to 4 targets from 36 starts around each."""
     _check_picture(file)
-    agent = _learn(variant, movements, seed, body)
-    cases = scenarios("fig4", body=body)
-    found = reproduce.ways(agent, cases, body)
-    switched = reproduce.ways(agent, [reproduce.switched(case) for case in cases], body)
-    missing = reproduce.starts_without_case(body)
+    agent = _learn(variant, movements, seed, config)
+    cases = scenarios("fig4", config=config)
+    found = reproduce.ways(agent, cases, config)
+    switched = reproduce.ways(agent, [reproduce.switched(case) for case in cases], config)
+    missing = reproduce.starts_without_case(config)
     figures.save(figures.fig4(found, switched, missing), file)
     for name, made in (("obstacle halfway", found), ("switched", switched)):
         good = sum(way.outcome == "success" for way in made)
@@ -439,11 +439,11 @@ def reproduce_fig5(
     ),
     movements: Movements = 20_000,
     seed: Seed = 0,
-    body: BodyName = "paper",
+    config: ConfigName = "paper",
 ) -> None:
     """Figure 5: the two patterns of weights."""
     _check_picture(file)
-    sets = reproduce.weight_sets(_learn("paper", movements, seed, body))
+    sets = reproduce.weight_sets(_learn("paper", movements, seed, config))
     figures.save(figures.fig5(sets), file)
     out.print(
         f"{sets.left.sum()} input neurons curve left, {sets.right.sum()} right; the mean of one "
@@ -460,7 +460,7 @@ def reproduce_table2(
     cases: Annotated[
         int, typer.Option(min=2, help="Random cases in each region, of each seed.")
     ] = 1_000,
-    body: BodyName = "paper",
+    config: ConfigName = "paper",
     babbles: Babbles = 1_000,
     hold_trials: Annotated[
         int, typer.Option(min=0, help="Trials of holding, of each diameter.")
@@ -475,7 +475,7 @@ def reproduce_table2(
     table = grasping.table2(
         seeds=seeds,
         cases=cases,
-        body=body,
+        config=config,
         babbles=babbles,
         hold_trials=hold_trials,
         progress_bar=True,
@@ -499,13 +499,13 @@ def reproduce_fig7(
     ),
     babbles: Babbles = 1_000,
     seed: Seed = 0,
-    body: BodyName = "paper",
+    config: ConfigName = "paper",
 ) -> None:
     """Figure 7: final portions of the hand's ways, bold where it grasped."""
     _check_picture(file)
-    agent = _learn_grasping(babbles, seed, body)
-    cases = scenarios("fig7", body=body)
-    ways = grasping.grasp_ways(agent, cases, body, progress_bar=True)
+    agent = _learn_grasping(babbles, seed, config)
+    cases = scenarios("fig7", config=config)
+    ways = grasping.grasp_ways(agent, cases, config, progress_bar=True)
     figures.save(figures.fig7(ways), file)
     _name_files([file])
 
@@ -517,11 +517,11 @@ def reproduce_fig8(
     ),
     babbles: Babbles = 1_000,
     seed: Seed = 0,
-    body: BodyName = "paper",
+    config: ConfigName = "paper",
 ) -> None:
     """Figure 8: activation of the arm's map, and weights of reaching and grasping."""
     _check_picture(file)
-    figures.save(figures.fig8(_learn_grasping(babbles, seed, body)), file)
+    figures.save(figures.fig8(_learn_grasping(babbles, seed, config)), file)
     _name_files([file])
 
 
@@ -530,23 +530,23 @@ def reproduce_sight(
     file: Annotated[Path, typer.Option("--out", help="Picture: png, svg or pdf.")] = Path(
         "sight.png"
     ),
-    body: BodyName = "paper",
+    config: ConfigName = "paper",
 ) -> None:
     """What the eye sees of the objects: its view, the fovea, and the edges there."""
     _check_picture(file)
-    figures.save(figures.sight(grasping.sights(body)), file)
+    figures.save(figures.sight(grasping.sights(config)), file)
     _name_files([file])
 
 
-def _learn_grasping(babbles: int, seed: int, body: str) -> HebbGrasping:
-    agent = HebbGrasping(gymnasium.make("BabbleGrasp-v0", body=body), seed=seed)
+def _learn_grasping(babbles: int, seed: int, config: str) -> HebbGrasping:
+    agent = HebbGrasping(gymnasium.make("BabbleGrasp-v0", config=config), seed=seed)
     return agent.learn(babbles, progress_bar=True)
 
 
 def _learn(
-    variant: str, movements: int, seed: int, body: str, *, quasi_static: bool = False
+    variant: str, movements: int, seed: int, config: str, *, quasi_static: bool = False
 ) -> HebbBabbling:
-    env = gymnasium.make("BabbleReachPattern-v0", body=body)
+    env = gymnasium.make("BabbleReachPattern-v0", config=config)
     agent = HebbBabbling(env, variant, seed=seed, quasi_static=quasi_static)
     return agent.learn(movements, progress_bar=True)
 

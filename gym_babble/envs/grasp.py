@@ -11,7 +11,7 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 
 from gym_babble import _core
-from gym_babble.config import BodyLike, config_json
+from gym_babble.config import ConfigLike, config_json
 from gym_babble.envs.choices import Choices, check_flags, check_names, check_whole, numbers
 from gym_babble.envs.single import BabbleEnv
 from gym_babble.envs.vector import BabbleVectorEnv
@@ -24,14 +24,14 @@ __all__ = ["BabbleGraspEnv", "BabbleGraspVectorEnv", "GraspChoices", "grasp_conf
 
 
 def grasp_config(
-    body: BodyLike, diameters: Sequence[float] | None, *, any_diameter_between: bool
+    config: ConfigLike, diameters: Sequence[float] | None, *, any_diameter_between: bool
 ) -> str:
-    """The config of `body` as JSON, with the diameters of the objects replaced if given [m].
+    """The config of `config` as JSON, with the diameters of the objects replaced if given [m].
 
     Raises:
         ConfigError: A name, field or value is not one there is.
     """
-    text = config_json(body)
+    text = config_json(config)
     if diameters is None and not any_diameter_between:
         return text
     document = json.loads(text)
@@ -66,7 +66,7 @@ class GraspChoices(Choices):
         obs: str,
         control: str,
         reward: str,
-        body: BodyLike,
+        config: ConfigLike,
         region: str,
         diameters: Sequence[float] | None,
         any_diameter_between: bool,
@@ -80,7 +80,7 @@ class GraspChoices(Choices):
         if max_episode_steps is not None:
             check_whole("max_episode_steps", max_episode_steps, 1, 1_000_000, "control steps")
         task = _core.GraspTask(
-            grasp_config(body, diameters, any_diameter_between=any_diameter_between),
+            grasp_config(config, diameters, any_diameter_between=any_diameter_between),
             control=control,
             reward=reward,
             goal=obs == "goal",
@@ -237,7 +237,7 @@ class BabbleGraspEnv(BabbleEnv):
         obs: str = "senses",
         control: str = "delta_posture",
         reward: str = "progress",
-        body: BodyLike = "paper",
+        config: ConfigLike = "paper",
         region: str = "palm_side",
         diameters: Sequence[float] | None = None,
         any_diameter_between: bool = False,
@@ -255,7 +255,7 @@ class BabbleGraspEnv(BabbleEnv):
             obs: "senses", "flat", "goal" or "retina".
             control: "delta_posture", "posture" or "torque".
             reward: "progress" or "sparse"; "sparse" with obs="goal".
-            body: A profile ("paper", "icub"), the path of a TOML or JSON file, a dict of what
+            config: A profile ("paper", "icub"), the path of a TOML or JSON file, a dict of what
                 differs from a profile, or a `gym_babble.Config`.
             region: "palm_side" or "full": where objects lie and arms start.
             diameters: Of the objects [m], to draw from; the config's 2.4 and 6 cm if not given.
@@ -279,7 +279,7 @@ class BabbleGraspEnv(BabbleEnv):
             obs=obs,
             control=control,
             reward=reward,
-            body=body,
+            config=config,
             region=region,
             diameters=diameters,
             any_diameter_between=any_diameter_between,
@@ -303,7 +303,7 @@ class BabbleGraspVectorEnv(BabbleVectorEnv):
         autoreset_mode: When an ended episode begins anew.
         threads: Threads that step the batch; one for each 4 environments, up to the number of
             processors, if not given. Results do not depend on it.
-        obs, control, reward, body, region, diameters, any_diameter_between, enclosure_reflex,
+        obs, control, reward, config, region, diameters, any_diameter_between, enclosure_reflex,
         max_episode_steps, camera, width, height, retina_size: As for `BabbleGraspEnv`.
 
     Raises:
@@ -323,7 +323,7 @@ class BabbleGraspVectorEnv(BabbleVectorEnv):
         obs: str = "senses",
         control: str = "delta_posture",
         reward: str = "progress",
-        body: BodyLike = "paper",
+        config: ConfigLike = "paper",
         region: str = "palm_side",
         diameters: Sequence[float] | None = None,
         any_diameter_between: bool = False,
@@ -342,7 +342,7 @@ class BabbleGraspVectorEnv(BabbleVectorEnv):
             obs=obs,
             control=control,
             reward=reward,
-            body=body,
+            config=config,
             region=region,
             diameters=diameters,
             any_diameter_between=any_diameter_between,

@@ -9,7 +9,7 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 
 from gym_babble import _core
-from gym_babble.config import BodyLike, config_json
+from gym_babble.config import ConfigLike, config_json
 from gym_babble.envs.choices import Choices, check_flags, check_names, check_whole, numbers
 from gym_babble.envs.single import BabbleEnv
 from gym_babble.envs.vector import BabbleVectorEnv
@@ -34,7 +34,7 @@ class ReachChoices(Choices):
         obs: str,
         control: str,
         reward: str,
-        body: BodyLike,
+        config: ConfigLike,
         settled: bool,
         max_episode_steps: int,
         render_mode: str | None,
@@ -44,7 +44,7 @@ class ReachChoices(Choices):
         check_flags(settled=settled)
         check_whole("max_episode_steps", max_episode_steps, 1, 1_000_000, "control steps")
         task = _core.ReachTask(
-            config_json(body),
+            config_json(config),
             control=control,
             reward=reward,
             goal=obs == "goal",
@@ -178,7 +178,7 @@ class BabbleReachEnv(BabbleEnv):
         obs: str = "senses",
         control: str = "delta_posture",
         reward: str = "progress",
-        body: BodyLike = "paper",
+        config: ConfigLike = "paper",
         settled: bool = False,
         max_episode_steps: int = 240,
         camera: str = "third_person",
@@ -194,7 +194,7 @@ class BabbleReachEnv(BabbleEnv):
             obs: "senses", "flat", "goal" or "retina".
             control: "delta_posture", "posture", "torque" or "pattern".
             reward: "progress" or "sparse"; "sparse" with obs="goal".
-            body: A profile ("paper", "icub"), the path of a TOML or JSON file, a dict of what
+            config: A profile ("paper", "icub"), the path of a TOML or JSON file, a dict of what
                 differs from a profile, or a `gym_babble.Config`.
             settled: Whether success also needs the arm to have come to rest.
             max_episode_steps: Time limit in control steps; none is needed in `pattern` control.
@@ -212,7 +212,7 @@ class BabbleReachEnv(BabbleEnv):
             obs=obs,
             control=control,
             reward=reward,
-            body=body,
+            config=config,
             settled=settled,
             max_episode_steps=max_episode_steps,
             camera=camera,
@@ -233,8 +233,8 @@ class BabbleReachVectorEnv(BabbleVectorEnv):
         autoreset_mode: When an ended episode begins anew.
         threads: Threads that step the batch; one for each 64 environments, up to the number of
             processors, if not given. Results do not depend on it.
-        obs, control, reward, body, settled, max_episode_steps, camera, width, height, retina_size:
-            As for `BabbleReachEnv`.
+        obs, control, reward, config, settled, max_episode_steps, camera, width, height,
+            retina_size: As for `BabbleReachEnv`.
 
     Raises:
         ConfigError: An argument or a config field is not one there is.
@@ -253,7 +253,7 @@ class BabbleReachVectorEnv(BabbleVectorEnv):
         obs: str = "senses",
         control: str = "delta_posture",
         reward: str = "progress",
-        body: BodyLike = "paper",
+        config: ConfigLike = "paper",
         settled: bool = False,
         max_episode_steps: int = 240,
         camera: str = "third_person",
@@ -269,7 +269,7 @@ class BabbleReachVectorEnv(BabbleVectorEnv):
             obs=obs,
             control=control,
             reward=reward,
-            body=body,
+            config=config,
             settled=settled,
             max_episode_steps=max_episode_steps,
             camera=camera,

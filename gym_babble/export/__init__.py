@@ -8,7 +8,7 @@ import xml.etree.ElementTree as ET
 from typing import TYPE_CHECKING, Any
 
 from gym_babble._core import __version__
-from gym_babble.config import BodyLike, Config
+from gym_babble.config import Config, ConfigLike
 from gym_babble.envs import BabbleGraspEnv, BabbleReachEnv
 from gym_babble.errors import ConfigError
 
@@ -38,7 +38,7 @@ COLOURS = {
 def export_mjcf(
     task: str = "grasp",
     *,
-    body: BodyLike = "paper",
+    config: ConfigLike = "paper",
     seed: int = 0,
     options: Mapping[str, Any] | None = None,
     timestep: float | None = None,
@@ -52,7 +52,7 @@ def export_mjcf(
     Args:
         task: "reach": upper arm, and forearm with its rigid hand; the target is a site. "grasp": a
             hand that moves, the object, and a support that carries nothing else.
-        body: Body and task, as for the environments.
+        config: Body and task, as for the environments.
         seed: The case is the one that `reset(seed=seed, options=options)` gives.
         options: What `reset` takes, for a case of your own.
         timestep: MuJoCo's step [s]; the environment's own if not given. The joints' armature and
@@ -62,37 +62,37 @@ def export_mjcf(
         ConfigError: A name, number or option is not one there is.
         ScenarioError: The case cannot be played.
     """
-    env = _env(task, body)
+    env = _env(task, config)
     env.reset(seed=seed, options=None if options is None else dict(options))
     core, case = env.choices.task, env.scenario
-    config = Config.from_json(core.config())
+    whole = Config.from_json(core.config())
     links = json.loads(core.robot())
-    dt = _timestep(timestep, config.reach if task == "reach" else config.grasp)
+    dt = _timestep(timestep, whole.reach if task == "reach" else whole.grasp)
 
     root = ET.Element("mujoco", model=f"babble_{task}")
-    _add_comment(root, task, config)
+    _add_comment(root, task, whole)
     ET.SubElement(root, "compiler", angle="radian")
     solver = {"integrator": "implicitfast", "cone": "elliptic", "impratio": "10"}
     ET.SubElement(root, "option", solver, timestep=_text(dt))
-    _add_defaults(root, config, dt)
+    _add_defaults(root, whole, dt)
     world = ET.SubElement(root, "worldbody")
     ET.SubElement(world, "light", pos="0 0 1", dir="0 0 -1")
     _add_links(world, links, dt)
     if task == "reach":
-        radius = _text(config.body.target.radius_m)
+        radius = _text(whole.body.target.radius_m)
         at = _text(*case["target"], 0)
         ET.SubElement(world, "site", name="target", pos=at, size=radius, rgba=COLOURS["target"])
     else:
-        _add_object(world, config, case)
+        _add_object(world, whole, case)
     if case["obstacle"] is not None:
-        _add_obstacle(world, config, case["obstacle"])
+        _add_obstacle(world, whole, case["obstacle"])
     _add_muscles(root, links)
     arm = core.posture_at(case["start"]) if task == "reach" else case["start"]
     _add_start(root, [*arm, *(link["range"][0] for link in links[2:])], has_object=task == "grasp")
     return _document(root)
 
 
-def export_urdf(task: str = "grasp", *, body: BodyLike = "paper") -> str:
+def export_urdf(task: str = "grasp", *, config: ConfigLike = "paper") -> str:
     """The robot as URDF, for ROS and other simulators.
 
     A capsule is a cylinder and two spheres. URDF knows joint damping but no springs, and no things
@@ -100,12 +100,12 @@ def export_urdf(task: str = "grasp", *, body: BodyLike = "paper") -> str:
 
     Args:
         task: "reach" or "grasp", as for `export_mjcf`.
-        body: Body and task, as for the environments.
+        config: Body and task, as for the environments.
 
     Raises:
         ConfigError: A name or number is not one there is.
     """
-    core = _env(task, body).choices.task
+    core = _env(task, config).choices.task
     root = ET.Element("robot", name=f"babble_{task}")
     _add_comment(root, task, Config.from_json(core.config()))
     ET.SubElement(root, "link", name="base")
@@ -118,10 +118,10 @@ def export_urdf(task: str = "grasp", *, body: BodyLike = "paper") -> str:
     return _document(root)
 
 
-def _env(task: str, body: BodyLike) -> Any:
+def _env(task: str, config: ConfigLike) -> Any:
     if task not in ENVS:
         raise ConfigError(f"task = {task!r} is not one of {', '.join(ENVS)}")
-    return ENVS[task](body=body)
+    return ENVS[task](config=config)
 
 
 def _timestep(given: Any, numbers: Any) -> float:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from gym_babble.agents.base import Agent
-    from gym_babble.config import BodyLike
+    from gym_babble.config import ConfigLike
 
 __all__ = [
     "CONTROLS",
@@ -89,7 +89,7 @@ def table1(
     *,
     seeds: int = 5,
     cases: int = 1_000,
-    body: BodyLike = "paper",
+    config: ConfigLike = "paper",
     variant: str = "paper",
     control: str = "pattern",
     quasi_static: bool = False,
@@ -106,15 +106,15 @@ def table1(
     env_id = CONTROLS[control]
     tests, legal_rates = [], []
     for seed in range(seeds):
-        env = gymnasium.make(env_id, body=body)
+        env = gymnasium.make(env_id, config=config)
         agent = HebbBabbling(env, variant, seed=seed, quasi_static=quasi_static)
         agent.learn(movements, progress_bar=progress_bar)
-        drawn = scenarios("table1", cases, seed, body=body)
+        drawn = scenarios("table1", cases, seed, config=config)
         bar = progress_bar and control != "pattern"  # There it takes but a moment.
-        tests.append(evaluate(agent, env_id, drawn, body=body, progress_bar=bar))
+        tests.append(evaluate(agent, env_id, drawn, config=config, progress_bar=bar))
         legal_rates.append(agent.legal_rate)
     settings = {
-        "body": str(body),
+        "config": str(config),
         "variant": variant,
         "control": control,
         "quasi_static": quasi_static,
@@ -134,9 +134,9 @@ class Way(NamedTuple):
     outcome: str
 
 
-def ways(agent: Agent, cases: Sequence[Scenario], body: BodyLike = "paper") -> list[Way]:
+def ways(agent: Agent, cases: Sequence[Scenario], config: ConfigLike = "paper") -> list[Way]:
     """The movements an agent chooses, in `pattern` control; cases that cannot be are left out."""
-    env = BabbleReachEnv("rgb_array", control="pattern", reward="sparse", body=body)
+    env = BabbleReachEnv("rgb_array", control="pattern", reward="sparse", config=config)
     made = []
     for case in cases:
         try:
@@ -158,9 +158,9 @@ def switched(case: Scenario) -> Scenario:
     return {**case, "start": (x, y), "obstacle": (*case["start"], radius)}
 
 
-def starts_without_case(body: BodyLike = "paper") -> NDArray[np.float64]:
+def starts_without_case(config: ConfigLike = "paper") -> NDArray[np.float64]:
     """Starts of Fig. 4 (n, 2) [m] out of reach, or with the arm inside of the obstacle."""
-    listed = _core.ReachTask(config_json(body)).fig4()
+    listed = _core.ReachTask(config_json(config)).fig4()
     angles = 2.0 * np.pi * np.arange(STARTS) / STARTS
     missing = []
     for first in range(0, len(listed), STARTS):

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from gym_babble.agents.base import Agent
-    from gym_babble.config import BodyLike
+    from gym_babble.config import ConfigLike
     from gym_babble.study.scenarios import GraspScenario
 
 __all__ = [
@@ -155,7 +155,7 @@ def table2(
     *,
     seeds: int = 5,
     cases: int = 1_000,
-    body: BodyLike = "paper",
+    config: ConfigLike = "paper",
     babbles: int = 1_000,
     hold_trials: int = 100,
     progress_bar: bool = False,
@@ -165,7 +165,7 @@ def table2(
     Args:
         seeds: Seeds 0, 1, ... of babbling and of the random cases.
         cases: Random cases in each region, of each seed; half of each size on average.
-        body: Body and task.
+        config: Body and task.
         babbles: Babbles to learn from.
         hold_trials: Trials of the reflex with each diameter; 0 for none.
         progress_bar: Show bars with the time left.
@@ -176,7 +176,7 @@ def table2(
     check_whole("seeds", seeds, 1, 10_000, "seeds")
     check_whole("cases", cases, 1, 1_000_000, "cases")
     check_whole("babbles", babbles, 1, 10_000_000, "babbles")
-    diameters = _diameters(body)
+    diameters = _diameters(config)
     hands: dict[float, list[Any]] = {d: [] for d in diameters}
     babbled: dict[float, list[Any]] = {d: [] for d in diameters}
     tests: dict[float, dict[str, dict[int, Evaluation]]] = {
@@ -184,21 +184,23 @@ def table2(
     }
     kept, made = 0, 0
     for seed in range(seeds):
-        agent = HebbGrasping(gymnasium.make("BabbleGrasp-v0", body=body), seed=seed)
+        agent = HebbGrasping(gymnasium.make("BabbleGrasp-v0", config=config), seed=seed)
         agent.learn(babbles, progress_bar=progress_bar)
         kept, made = kept + agent.kept, made + agent.babbles
         left = agent.babbled
         for d in diameters:
             babbled[d].append(left["hand"][left["diameter"] == d])
         for protocol in PROTOCOLS:
-            drawn = scenarios(protocol, None if protocol == "table2" else cases, seed, body=body)
+            drawn = scenarios(
+                protocol, None if protocol == "table2" else cases, seed, config=config
+            )
             for d in diameters:
                 chosen = [case for case in drawn if case["diameter"] == d]
                 if not chosen:
                     continue
-                tests[d][protocol][seed] = _play(agent, chosen, body, progress_bar=progress_bar)
+                tests[d][protocol][seed] = _play(agent, chosen, config, progress_bar=progress_bar)
                 if protocol == "table2":
-                    hands[d].append(recalled_hands(agent, chosen, body))
+                    hands[d].append(recalled_hands(agent, chosen, config))
     sizes = [
         Sized(
             diameter=d,
@@ -208,25 +210,25 @@ def table2(
         )
         for d in diameters
     ]
-    hold = hold_rates(hold_trials, body, progress_bar=progress_bar) if hold_trials else []
-    settings = {"body": str(body), "seeds": seeds, "cases": cases, "babbles": babbles}
+    hold = hold_rates(hold_trials, config, progress_bar=progress_bar) if hold_trials else []
+    settings = {"config": str(config), "seeds": seeds, "cases": cases, "babbles": babbles}
     return TableTwo(settings, tuple(sizes), tuple(hold), kept / made if made else float("nan"))
 
 
-def _diameters(body: BodyLike) -> list[float]:
-    if Config.from_json(config_json(body)).grasp.any_diameter_between:
+def _diameters(config: ConfigLike) -> list[float]:
+    if Config.from_json(config_json(config)).grasp.any_diameter_between:
         raise ConfigError("grasp.any_diameter_between = true: Table II has a list of diameters")
-    return sorted({case["diameter"] for case in scenarios("table2", body=body)})
+    return sorted({case["diameter"] for case in scenarios("table2", config=config)})
 
 
 def _play(
-    agent: Agent, cases: Sequence[GraspScenario], body: BodyLike, *, progress_bar: bool
+    agent: Agent, cases: Sequence[GraspScenario], config: ConfigLike, *, progress_bar: bool
 ) -> Evaluation:
     return evaluate(
         agent,
         "BabbleGrasp-v0",
         cases,
-        body=body,
+        config=config,
         progress_bar=progress_bar,
         max_episode_steps=TEST_STEPS,
         threads=os.cpu_count() or 1,
@@ -234,10 +236,10 @@ def _play(
 
 
 def recalled_hands(
-    agent: HebbGrasping, cases: Sequence[GraspScenario], body: BodyLike = "paper"
+    agent: HebbGrasping, cases: Sequence[GraspScenario], config: ConfigLike = "paper"
 ) -> NDArray[np.float64]:
     """Equilibrium points of thumb and finger that the sight of each case recalls (n, 2) [deg]."""
-    envs = gymnasium.make_vec("BabbleGrasp-v0", num_envs=len(cases), body=body)
+    envs = gymnasium.make_vec("BabbleGrasp-v0", num_envs=len(cases), config=config)
     senses, _ = envs.reset(seed=0, options={"scenario": list(cases)})
     envs.close()
     return agent.decide(senses["eye"], senses["fovea"])[:, 2:]
@@ -245,7 +247,7 @@ def recalled_hands(
 
 def hold_rates(
     trials: int = 100,
-    body: BodyLike = "paper",
+    config: ConfigLike = "paper",
     diameters: Sequence[float] = HOLD_DIAMETERS_M,
     *,
     progress_bar: bool = False,
@@ -259,7 +261,7 @@ def hold_rates(
         ConfigError: There are no trials, or a field of the body is not one there is.
     """
     check_whole("trials", trials, 1, 1_000_000, "trials")
-    task = _core.GraspTask(config_json(body))
+    task = _core.GraspTask(config_json(config))
     rates = []
     total = trials * len(diameters)
     parts = track([trials] * len(diameters), "holding", total=total, show=progress_bar)
@@ -296,12 +298,12 @@ class GraspWay(NamedTuple):
 def grasp_ways(
     agent: Agent,
     cases: Sequence[GraspScenario],
-    body: BodyLike = "paper",
+    config: ConfigLike = "paper",
     *,
     progress_bar: bool = False,
 ) -> list[GraspWay]:
     """The ways of the palm in tests of an agent."""
-    env = BabbleGraspEnv("rgb_array", body=body, max_episode_steps=TEST_STEPS)
+    env = BabbleGraspEnv("rgb_array", config=config, max_episode_steps=TEST_STEPS)
     made = []
     parts = track([1] * len(cases), "testing", total=len(cases), show=progress_bar)
     for case, _ in zip(cases, parts, strict=True):
@@ -315,13 +317,15 @@ def grasp_ways(
     return made
 
 
-def sights(body: BodyLike = "paper", size: int = 315) -> list[tuple[str, list[NDArray[np.uint8]]]]:
+def sights(
+    config: ConfigLike = "paper", size: int = 315
+) -> list[tuple[str, list[NDArray[np.uint8]]]]:
     """What the eye sees of each diameter: name, and eye's view, fovea and edges (size, size, 3)."""
     seen = []
-    for diameter in _diameters(body):
+    for diameter in _diameters(config):
         images = []
         for camera in ("eye", "fovea", "edges"):
-            env = BabbleGraspEnv("rgb_array", body=body, camera=camera, width=size, height=size)
+            env = BabbleGraspEnv("rgb_array", config=config, camera=camera, width=size, height=size)
             env.reset(seed=3, options={"diameter": diameter})
             images.append(env.render())
         seen.append((f"{100 * diameter:g} cm", images))

@@ -116,7 +116,7 @@ class Stored(Result):
     """A result that a study found elsewhere, at another time."""
 
     provenance: dict[str, Any]
-    """The study's command, body and presets."""
+    """The study's command, config and presets."""
 
     @property
     def note(self) -> str:
@@ -164,16 +164,16 @@ class Comparison:
         others = [task.made for task in TASKS.values() if task != self.task]
         elsewhere = ("task", "progress_bar", *others)
         settings = {k: v for k, v in asdict(self.settings).items() if k not in elsewhere}
-        body = self.settings.body
+        config = self.settings.config
         paper = {} if self.task.paper is None else {"legal_rate": 0.2, "test": paper_tally()}
         return {
             "task": self.task.name,
             "protocol": self.task.protocol,
             "version": __version__,
             **settings,
-            "body": str(body)
-            if isinstance(body, str | os.PathLike)
-            else Config.from_json(config_json(body)).profile,
+            "config": str(config)
+            if isinstance(config, str | os.PathLike)
+            else Config.from_json(config_json(config)).profile,
             "paper": paper or None,
             "agents": [result.to_json() for result in self.results],
             "skipped": [{"agent": key, "reason": why} for key, why in self.skipped.items()],
@@ -238,7 +238,7 @@ def compare(
     began = perf_counter()
     threads = os.cpu_count() or 1
     cases = [
-        scenarios(task.protocol, settings.cases, seed, body=settings.body, threads=threads)
+        scenarios(task.protocol, settings.cases, seed, config=settings.config, threads=threads)
         for seed in range(settings.seeds)
     ]
     results: list[Result] = []
@@ -280,7 +280,7 @@ def _run(
                 one.agent,
                 one.env_id,
                 its_cases,
-                body=settings.body,
+                config=settings.config,
                 progress_bar=bar,
                 **one.env_kwargs,
             )
@@ -292,8 +292,8 @@ def _run(
 def _stored(contender: Contender, task: Task, settings: Settings) -> Stored:
     """What the study found, whatever seeds and cases are compared here."""
     study = json.loads((STUDIES / f"ppo_{task.name}.json").read_text(encoding="utf-8"))
-    if settings.body != study["body"]:
-        raise StudyError(f"the stored study is of body {study['body']}")
+    if settings.config != study["config"]:
+        raise StudyError(f"the stored study is of config {study['config']}")
     names = (*task.outcomes, *task.facts)
     return Stored(
         contender,

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from contextlib import AbstractContextManager
 
     from gym_babble.agents.base import Agent
-    from gym_babble.config import BodyLike
+    from gym_babble.config import ConfigLike
 
 __all__ = ["CONTENDERS", "Contender", "CurvePoint", "Learning", "Settings", "Trained"]
 
@@ -48,7 +48,7 @@ class Settings:
 
     task: str = "reach"
     """"reach" or "grasp"."""
-    body: BodyLike = "paper"
+    config: ConfigLike = "paper"
     """Body and task."""
     seeds: int = 1
     """Seeds 0, 1, ... of learning and tests."""
@@ -123,8 +123,10 @@ class _Course:
 
     def __init__(self, settings: Settings, env_id: str, marks: set[int], steps: int) -> None:
         protocol = task_of(env_id).protocol
-        self._cases = scenarios(protocol, VALIDATION_CASES, split="validation", body=settings.body)
-        self._body, self._env_id = settings.body, env_id
+        self._cases = scenarios(
+            protocol, VALIDATION_CASES, split="validation", config=settings.config
+        )
+        self._config, self._env_id = settings.config, env_id
         self._marks, self._steps = marks, steps
         self._began = perf_counter()
         self.seconds = 0.0
@@ -134,7 +136,9 @@ class _Course:
         """To be called as it learns, with what it has made and how many of these were good."""
         self.seconds += perf_counter() - self._began
         if good in self._marks:
-            success = evaluate(agent, self._env_id, self._cases, body=self._body).rate("success")
+            success = evaluate(agent, self._env_id, self._cases, config=self._config).rate(
+                "success"
+            )
             self.curve.append(CurvePoint(made * self._steps, self.seconds, success))
         self._began = perf_counter()
 
@@ -153,7 +157,7 @@ class _Course:
 
 def _hebb(variant: str) -> Callable[[Settings, int], Trained]:
     def train(settings: Settings, seed: int) -> Trained:
-        agent = HebbBabbling(gymnasium.make(PATTERN, body=settings.body), variant, seed=seed)
+        agent = HebbBabbling(gymnasium.make(PATTERN, config=settings.config), variant, seed=seed)
         steps = _config(settings).movement_steps
         course = _Course(settings, PATTERN, {*LEGAL_MOVEMENTS, settings.movements}, steps)
         agent.learn(
@@ -167,7 +171,7 @@ def _hebb(variant: str) -> Callable[[Settings, int], Trained]:
 
 
 def _hebb_grasping(settings: Settings, seed: int) -> Trained:
-    agent = HebbGrasping(gymnasium.make(GRASPING, body=settings.body), seed=seed)
+    agent = HebbGrasping(gymnasium.make(GRASPING, config=settings.config), seed=seed)
     steps = round(BABBLE_S / _config(settings).grasp.control_period_s)
     course = _Course(settings, GRASPING, {*KEPT_BABBLES, settings.babbles}, steps)
     agent.learn(
@@ -179,7 +183,7 @@ def _hebb_grasping(settings: Settings, seed: int) -> Trained:
 
 
 def _config(settings: Settings) -> Config:
-    return Config.from_json(config_json(settings.body))
+    return Config.from_json(config_json(settings.config))
 
 
 def _ppo(preset: str) -> Callable[[Settings, int], Trained]:
@@ -188,7 +192,7 @@ def _ppo(preset: str) -> Callable[[Settings, int], Trained]:
 
         ppo = train_ppo(
             preset,
-            body=settings.body,
+            config=settings.config,
             seed=seed,
             steps=settings.ppo_steps,
             validation_cases=VALIDATION_CASES,
@@ -215,7 +219,9 @@ def _untaught(
     """An agent made of an environment and a seed, which needs no learning."""
 
     def train(settings: Settings, seed: int) -> Trained:
-        return Trained(agent=make(gymnasium.make(env_id, body=settings.body), seed), env_id=env_id)
+        return Trained(
+            agent=make(gymnasium.make(env_id, config=settings.config), seed), env_id=env_id
+        )
 
     return train
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from gym_babble.agents.base import Agent
-    from gym_babble.config import BodyLike
+    from gym_babble.config import ConfigLike
     from gym_babble.study.scenarios import GraspScenario, Scenario
 
 __all__ = ["Evaluation", "evaluate", "wilson"]
@@ -79,7 +79,7 @@ def evaluate(
     env_id: str = "BabbleReachPattern-v0",
     cases: Sequence[Scenario | GraspScenario] | None = None,
     *,
-    body: BodyLike = "paper",
+    config: ConfigLike = "paper",
     deterministic: bool = True,
     progress_bar: bool = False,
     **env_kwargs: Any,
@@ -91,7 +91,7 @@ def evaluate(
         env_id: Environment to play in.
         cases: From `scenarios`; if not given 1,000 of Table I, or of the region "palm_side" in
             grasping, of seed 0 and split "test".
-        body: Body and task.
+        config: Body and task.
         deterministic: Passed to `predict`.
         progress_bar: Show a bar with the time left.
         env_kwargs: Further arguments of the environment.
@@ -101,14 +101,14 @@ def evaluate(
         ScenarioError: A case cannot be played on this body.
     """
     if cases is None:
-        cases = scenarios(task_of(env_id).protocol, 1000, body=body)
+        cases = scenarios(task_of(env_id).protocol, 1000, config=config)
     if not cases:
         raise ConfigError("cases is empty, expected at least one")
     groups = [cases[i : i + ENVS] for i in range(0, len(cases), ENVS)]
     result = Evaluation((), (), ())
     sizes = (len(group) for group in groups)
     for i, _ in enumerate(track(sizes, "evaluating", total=len(cases), show=progress_bar)):
-        envs = gymnasium.make_vec(env_id, num_envs=len(groups[i]), body=body, **env_kwargs)
+        envs = gymnasium.make_vec(env_id, num_envs=len(groups[i]), config=config, **env_kwargs)
         result += _play(agent, envs, groups[i], deterministic=deterministic)
         envs.close()
     return result

@@ -33,7 +33,7 @@ except ImportError as error:
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from gym_babble.config import BodyLike
+    from gym_babble.config import ConfigLike
 
 __all__ = [
     "PRESETS",
@@ -66,7 +66,7 @@ class Preset:
     env_id: str
     """Environment."""
     env_kwargs: dict[str, Any] = field(default_factory=dict)
-    """Further arguments of the environment; the body is not among them."""
+    """Further arguments of the environment; the config is not among them."""
     senses: tuple[str, ...]
     """The senses that the networks are given."""
     num_envs: int
@@ -174,7 +174,7 @@ class TrainedPPO:
     env_id: str
     """Environment that it learnt in."""
     env_kwargs: dict[str, Any]
-    """Further arguments of the environment, for `evaluate`; the body is not among them."""
+    """Further arguments of the environment, for `evaluate`; the config is not among them."""
     movements: int
     """Episodes that ended while it learnt; in `pattern` control each is one movement."""
     control_steps: int
@@ -188,7 +188,7 @@ class TrainedPPO:
 def train_ppo(
     preset: str | Preset,
     *,
-    body: BodyLike = "paper",
+    config: ConfigLike = "paper",
     seed: int = 0,
     steps: int | None = None,
     validation_cases: int = 200,
@@ -200,7 +200,7 @@ def train_ppo(
 
     Args:
         preset: A name in `PRESETS`, or a preset of your own.
-        body: Body and task, as for the environments.
+        config: Body and task, as for the environments.
         seed: Seed of the networks and of the cases.
         steps: Steps of all environments together, rounded up to whole rollouts; the preset's if
             not given. In `pattern` control these are movements.
@@ -217,16 +217,16 @@ def train_ppo(
     _check(steps, validation_cases, validations)
     protocol = task_of(chosen.env_id).protocol
     with one_thread():
-        env = BabbleVecEnv(chosen.env_id, chosen.num_envs, body=body, **chosen.env_kwargs)
+        env = BabbleVecEnv(chosen.env_id, chosen.num_envs, config=config, **chosen.env_kwargs)
         model = _model(chosen, env, seed)
         cases = (
-            scenarios(protocol, validation_cases, split="validation", body=body)
+            scenarios(protocol, validation_cases, split="validation", config=config)
             if validation_cases
             else []
         )
 
         def validate() -> float:
-            played = evaluate(model, chosen.env_id, cases, body=body, **chosen.env_kwargs)
+            played = evaluate(model, chosen.env_id, cases, config=config, **chosen.env_kwargs)
             return played.rate("success")
 
         rollouts = math.ceil((steps or chosen.steps) / (model.n_steps * env.num_envs))

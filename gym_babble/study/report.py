@@ -211,15 +211,15 @@ def _filmed(
     if not played:
         return None
     result = played[0]
-    trained, body = result.trained[0], comparison.settings.body
-    cases = scenarios(comparison.task.protocol, comparison.settings.cases, body=body)
+    trained, config = result.trained[0], comparison.settings.config
+    cases = scenarios(comparison.task.protocol, comparison.settings.cases, config=config)
     good = [
         case
         for case, outcome in zip(cases, result.tests[0].outcomes, strict=True)
         if outcome == "success"
     ]
     case = max(good or cases, key=worth)
-    loaded = LoadedAgent(trained.agent, trained.env_id, body, trained.env_kwargs)
+    loaded = LoadedAgent(trained.agent, trained.env_id, config, trained.env_kwargs)
     film = record(loaded, options={"scenario": case}, size=600)
     eye = record(loaded, options={"scenario": case}, camera="eye", size=630).frames[0]
     return result, case, film, png(eye)
@@ -276,11 +276,11 @@ def _trajectories(comparison: Comparison, key: str) -> str:
     result = comparison.result(key)
     if not isinstance(result, Played):
         return ""
-    body, agent = comparison.settings.body, result.trained[0].agent
-    cases = scenarios("fig4", body=body)
-    missing = starts_without_case(body)
-    found = ways(agent, cases, body)
-    turned = ways(agent, [switched(case) for case in cases], body)
+    config, agent = comparison.settings.config, result.trained[0].agent
+    cases = scenarios("fig4", config=config)
+    missing = starts_without_case(config)
+    found = ways(agent, cases, config)
+    turned = ways(agent, [switched(case) for case in cases], config)
     return f"<h2>Trajectories of {escape(result.contender.title)} (Fig. 4)</h2>\n" + _figure(
         _svg(figures.fig4(found, turned, missing)),
         "Four targets (circles) and 36 starts around each (dots), obstacles not drawn. Bold: "
@@ -318,8 +318,8 @@ def _hands(comparison: Comparison) -> str:
     agent = result.trained[0].agent if isinstance(result, Played) else None
     if not isinstance(agent, HebbGrasping):
         return ""
-    body = comparison.settings.body
-    ways = grasp_ways(agent, scenarios("fig7", body=body)[::FIG7_EVERY], body)
+    config = comparison.settings.config
+    ways = grasp_ways(agent, scenarios("fig7", config=config)[::FIG7_EVERY], config)
     return (
         "<h2>Ways of the hand (Fig. 7)</h2>\n"
         + _figure(
@@ -340,7 +340,7 @@ def _hands(comparison: Comparison) -> str:
 
 def _sight(comparison: Comparison) -> str:
     return "<h2>What the eye sees</h2>\n" + _figure(
-        _svg(figures.sight(sights(comparison.settings.body))),
+        _svg(figures.sight(sights(comparison.settings.config))),
         "Objects of each size: the eye's view, the fovea in its middle, and the edges there, which "
         "tell the hand the size.",
     )
@@ -349,7 +349,7 @@ def _sight(comparison: Comparison) -> str:
 def _made(comparison: Comparison, command: str) -> str:
     settings, protocol = comparison.settings, comparison.task.protocol
     facts = {
-        "body": comparison.to_json()["body"],
+        "config": comparison.to_json()["config"],
         "seeds": ", ".join(map(str, range(settings.seeds))),
         "cases": f"protocol {protocol}, split test, {settings.cases:,} for each seed",
         "processors": str(os.cpu_count()),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, TypedDict
 
 from gym_babble import _core
-from gym_babble.config import BodyLike, config_json
+from gym_babble.config import ConfigLike, config_json
 from gym_babble.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def scenarios(
     seed: int = 0,
     *,
     split: str = "test",
-    body: BodyLike = "paper",
+    config: ConfigLike = "paper",
     threads: int = 1,
 ) -> list[Any]:
     """The cases of a protocol, for `reset(options={"scenario": case})`.
@@ -76,7 +76,7 @@ def scenarios(
         n: How many; the first ones of a protocol that has a fixed list.
         seed: Seed of the draw.
         split: "test", or "validation" for choosing settings: disjoint for every seed.
-        body: Body and task, as for the environments.
+        config: Body and task, as for the environments.
         threads: Threads that draw; the cases do not depend on them.
 
     Returns:
@@ -97,12 +97,12 @@ def scenarios(
     cases: Iterable[Any]
     if PROTOCOLS[protocol] == "grasp":
         region = protocol if protocol == "palm_side" else "full"
-        task = _core.GraspTask(config_json(body), region=region)
+        task = _core.GraspTask(config_json(config), region=region)
         cases = task.cases(protocol, many, seed, split, threads)
     elif protocol == "table1":
-        cases = _core.ReachTask(config_json(body)).table1(many, seed, split, threads)
+        cases = _core.ReachTask(config_json(config)).table1(many, seed, split, threads)
     else:
-        cases = _core.ReachTask(config_json(body)).fig4()
+        cases = _core.ReachTask(config_json(config)).fig4()
     numbered = [
         {"protocol": protocol, "index": i, **case}
         for i, case in enumerate(cases)

@@ -51,7 +51,7 @@ def record(
         camera=camera,
         width=size,
         height=size,
-        body=loaded.body,
+        config=loaded.config,
         **loaded.env_kwargs,
     )
     observation, info = env.reset(seed=seed, options=options)

@@ -1,8 +1,8 @@
 //! What a physics step of 5 ms costs, free and with a ball in the hand, in both engines.
 
 use babble_body::Body;
-use babble_body::config::{Engine, Fingers};
-use babble_body::robot::{Ball, Drive, Robot, Setup, World, towards};
+use babble_body::config::{EngineName, Fingers};
+use babble_body::robot::{Ball, MuscleCommands, Robot, Setup, World, towards};
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 
@@ -10,7 +10,7 @@ const DT: f64 = 0.005;
 /// Steps from one target of the arm to the next.
 const STEPS: u32 = 100;
 
-fn robot(engine: Engine, fingers: Fingers) -> Robot {
+fn robot(engine: EngineName, fingers: Fingers) -> Robot {
     let mut body = Body::paper();
     body.engine = engine;
     body.grip.fingers = fingers;
@@ -26,7 +26,7 @@ fn world(robot: &Robot, ball: Ball, support: bool) -> World {
     })
 }
 
-fn reflex(robot: &Robot, arm: [f64; 2]) -> Drive {
+fn reflex(robot: &Robot, arm: [f64; 2]) -> MuscleCommands {
     let [thumb, finger] = robot.body().grip.reflex_deg.map(f64::to_radians);
     towards([arm[0], arm[1], thumb, finger])
 }
@@ -58,7 +58,7 @@ fn held(robot: &Robot) -> World {
 }
 
 fn steps(c: &mut Criterion) {
-    for (engine, of) in [(Engine::Tree, "tree"), (Engine::Rapier, "rapier")] {
+    for (engine, of) in [(EngineName::Tree, "tree"), (EngineName::Rapier, "rapier")] {
         for (fingers, joints) in [(Fingers::Virtual, 9), (Fingers::Independent, 18)] {
             let robot = robot(engine, fingers);
             let far = Ball {

@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 
 use crate::config::Body;
 use crate::error::BodyError;
-use crate::skeleton::{self, Part};
+use crate::skeleton::{self, BoneKind};
 
 /// A straight piece of the arm in the plane of motion, in the frame of its link \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,7 +45,7 @@ const TOLERANCE_M: f64 = 1e-9;
 
 /// Where the arm is in its plane for a posture.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Placement {
+pub struct ArmPose {
     /// Position of the elbow \[m\].
     pub elbow: Vector2<f64>,
     /// Position of the fingertip \[m\].
@@ -60,12 +60,12 @@ impl PlanarArm {
     /// Derives the planar arm from the skeleton of `body`.
     #[must_use]
     pub fn new(body: &Body) -> Self {
-        let (bones, tip) = skeleton::bones(body, &skeleton::posture(&body.joints, [0.0, 0.0]));
+        let (bones, tip) = skeleton::bones(body, &skeleton::joint_angles(&body.joints, [0.0, 0.0]));
         let elbow = Vector2::new(body.arm.upper_arm_m, 0.0);
         let outline = |of_upper_arm: bool, origin: Vector2<f64>| {
             let own = bones
                 .iter()
-                .filter(|bone| (bone.part == Part::UpperArm) == of_upper_arm);
+                .filter(|bone| (bone.kind == BoneKind::UpperArm) == of_upper_arm);
             let flat = own.map(|bone| Segment {
                 a: bone.a.xy() - origin,
                 b: bone.b.xy() - origin,
@@ -132,7 +132,7 @@ impl PlanarArm {
 
     /// Forward kinematics of posture `q` \[rad\].
     #[must_use]
-    pub fn place(&self, q: [f64; 2]) -> Placement {
+    pub fn place(&self, q: [f64; 2]) -> ArmPose {
         let (s1, c1) = libm::sincos(q[0]);
         let (s12, c12) = libm::sincos(q[0] + q[1]);
         let elbow = Vector2::new(self.upper * c1, self.upper * s1);
@@ -147,7 +147,7 @@ impl PlanarArm {
                 Vector2::new(self.reach * ct, self.reach * st),
                 fore_direction,
             );
-        Placement {
+        ArmPose {
             elbow,
             tip,
             upper_direction: Vector2::new(c1, s1),

@@ -108,7 +108,7 @@ pub struct Object {
 /// How hard surfaces are. Each contact is a spring and a damper, both implicit, and Coulomb friction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Contact {
+pub struct ContactModel {
     /// Stiffness of a contact \[N/m\]; 20 000 \[C\].
     pub stiffness_n_m: f64,
     /// Damping of a contact divided by its stiffness: the time in which surfaces part when nothing
@@ -122,7 +122,7 @@ pub struct Contact {
 /// What steps arm, hand and object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Engine {
+pub enum EngineName {
     /// Made for this robot: a tree of joints about the vertical, in double precision.
     Tree,
     /// rapier3d with settings of its own for contacts: the reference, some ten times slower. Its bits
@@ -153,7 +153,7 @@ pub struct Target {
 #[serde(deny_unknown_fields)]
 pub struct Body {
     /// What steps the world in grasping; `tree` \[C\].
-    pub engine: Engine,
+    pub engine: EngineName,
     /// Upper arm and forearm.
     pub arm: Arm,
     /// Palm, thumb and fingers.
@@ -173,7 +173,7 @@ pub struct Body {
     /// What is grasped.
     pub object: Object,
     /// How hard surfaces are.
-    pub contact: Contact,
+    pub contact: ContactModel,
 }
 
 impl Body {
@@ -182,7 +182,7 @@ impl Body {
     #[must_use]
     pub fn paper() -> Self {
         Self {
-            engine: Engine::Tree,
+            engine: EngineName::Tree,
             arm: Arm {
                 upper_arm_m: 0.15,
                 forearm_m: 0.13,
@@ -232,7 +232,7 @@ impl Body {
                 linear_damping: 0.5,
                 angular_damping: 20.0,
             },
-            contact: Contact {
+            contact: ContactModel {
                 stiffness_n_m: 20_000.0,
                 relaxation_s: 0.013,
                 stiction_m_s: 1e-4,

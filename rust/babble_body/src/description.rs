@@ -6,10 +6,10 @@ use serde::Serialize;
 use crate::arm::PlanarArm;
 use crate::config::{Body, Muscles};
 use crate::dynamics::{Dynamics, cross_section};
-use crate::inertia::Inertia;
 use crate::joints::ARM_JOINTS;
+use crate::mass::MassProperties;
 use crate::robot::Solid;
-use crate::skeleton::{self, Bone, Part};
+use crate::skeleton::{self, Bone, BoneKind};
 
 /// A link, the joint that carries it, and the muscles of that joint.
 ///
@@ -37,7 +37,7 @@ pub struct LinkDescription {
     pub muscles: Muscles,
     /// Mass, its centre and its inertia.
     #[serde(flatten)]
-    pub inertia: Inertia,
+    pub inertia: MassProperties,
     /// What can touch.
     pub solids: Vec<NamedSolid>,
 }
@@ -59,7 +59,7 @@ pub struct NamedSolid {
 #[must_use]
 pub fn reaching(body: &Body) -> [LinkDescription; 2] {
     let arm = PlanarArm::new(body);
-    let (bones, _) = skeleton::bones(body, &skeleton::posture(&body.joints, [0.0, 0.0]));
+    let (bones, _) = skeleton::bones(body, &skeleton::joint_angles(&body.joints, [0.0, 0.0]));
     let named: Vec<_> = bone_names().into_iter().zip(bones).collect();
     let (upper, fore) = named.split_at(1);
     let elbow = Vector3::new(arm.upper, 0.0, 0.0);
@@ -68,7 +68,7 @@ pub fn reaching(body: &Body) -> [LinkDescription; 2] {
         let placed = named
             .iter()
             .map(|(name, bone)| (name, moved(bone, -origin)));
-        let mut inertia = Inertia::sum(placed.clone().map(|(_, bone)| rod(body, &bone)));
+        let mut inertia = MassProperties::sum(placed.clone().map(|(_, bone)| rod(body, &bone)));
         // The equation of motion's: the same but for bones that leave the plane, by some 1e-5 of it.
         inertia.inertia[(2, 2)] = moment - inertia.mass * inertia.centre.xy().norm_squared();
         LinkDescription {
@@ -113,10 +113,10 @@ fn moved(bone: &Bone, by: Vector3<f64>) -> Bone {
 }
 
 /// The bone as the equation of motion has it: with flat ends.
-fn rod(body: &Body, bone: &Bone) -> Inertia {
-    let (section, beside) = cross_section(body, bone.part);
-    let above = match bone.part {
-        Part::Palm => body.hand.palm_height_m * body.hand.palm_height_m / 12.0,
+fn rod(body: &Body, bone: &Bone) -> MassProperties {
+    let (section, beside) = cross_section(body, bone.kind);
+    let above = match bone.kind {
+        BoneKind::Palm => body.hand.palm_height_m * body.hand.palm_height_m / 12.0,
         _ => beside,
     };
     let length = (bone.b - bone.a).norm();
@@ -129,7 +129,7 @@ fn rod(body: &Body, bone: &Bone) -> Inertia {
     let square = |v: Vector3<f64>| v * v.transpose();
     let spread =
         square(along) * (length * length / 12.0) + square(side) * beside + square(up) * above;
-    Inertia::from_spread(mass, (bone.a + bone.b) / 2.0, spread * mass)
+    MassProperties::from_spread(mass, (bone.a + bone.b) / 2.0, spread * mass)
 }
 
 fn touching(body: &Body, name: &str, bone: &Bone) -> NamedSolid {

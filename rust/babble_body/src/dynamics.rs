@@ -12,7 +12,7 @@
 
 use crate::arm::PlanarArm;
 use crate::config::{Body, Muscles};
-use crate::skeleton::{self, Part};
+use crate::skeleton::{self, BoneKind};
 
 /// Posture and joint speeds of the arm.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
@@ -31,9 +31,9 @@ impl ArmState {
     }
 }
 
-/// Inertia of the two links about their joints.
+/// Masses, centres of mass and moments of inertia of the two links.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Inertia {
+pub struct ArmInertia {
     /// Moment of the upper arm about the shoulder \[kg·m²\].
     pub upper: f64,
     /// Moment of forearm and hand about the elbow \[kg·m²\].
@@ -52,7 +52,7 @@ pub struct Inertia {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dynamics {
     muscles: Muscles,
-    inertia: Inertia,
+    inertia: ArmInertia,
     upper_length: f64,
     lower: [f64; 2],
     upper: [f64; 2],
@@ -73,7 +73,7 @@ impl Dynamics {
 
     /// Masses and moments, for references and exporters.
     #[must_use]
-    pub const fn inertia(&self) -> &Inertia {
+    pub const fn inertia(&self) -> &ArmInertia {
         &self.inertia
     }
 
@@ -110,7 +110,7 @@ impl Dynamics {
     /// M as (M11, M12, M22) and C.
     #[inline]
     fn mass_and_coriolis(&self, state: ArmState) -> ([f64; 3], [f64; 2]) {
-        let Inertia {
+        let ArmInertia {
             upper,
             fore,
             fore_mass,
@@ -167,9 +167,9 @@ impl Dynamics {
 }
 
 /// Sums the bones as solid rods of the body's density.
-fn inertia(body: &Body) -> Inertia {
-    let (bones, _) = skeleton::bones(body, &skeleton::posture(&body.joints, [0.0, 0.0]));
-    let mut total = Inertia {
+fn inertia(body: &Body) -> ArmInertia {
+    let (bones, _) = skeleton::bones(body, &skeleton::joint_angles(&body.joints, [0.0, 0.0]));
+    let mut total = ArmInertia {
         upper: 0.0,
         fore: 0.0,
         fore_mass: 0.0,
@@ -179,17 +179,17 @@ fn inertia(body: &Body) -> Inertia {
     };
     let elbow = nalgebra::Vector2::new(body.arm.upper_arm_m, 0.0);
     for bone in bones {
-        let origin = if bone.part == Part::UpperArm {
+        let origin = if bone.kind == BoneKind::UpperArm {
             nalgebra::Vector2::zeros()
         } else {
             elbow
         };
         let (a, b) = (bone.a.xy() - origin, bone.b.xy() - origin);
-        let (section, across) = cross_section(body, bone.part);
+        let (section, across) = cross_section(body, bone.kind);
         let mass = body.arm.density_kg_m3 * section * (bone.b - bone.a).norm();
         let moment = mass * ((a.norm_squared() + a.dot(&b) + b.norm_squared()) / 3.0 + across);
         let centre = (a + b) / 2.0;
-        if bone.part == Part::UpperArm {
+        if bone.kind == BoneKind::UpperArm {
             total.upper += moment;
             total.upper_mass += mass;
             total.upper_centre = centre.x;
@@ -206,16 +206,16 @@ fn inertia(body: &Body) -> Inertia {
 
 /// Area of a bone's cross-section \[m²\] and its mean square distance from the bone's line in the
 /// plane of motion \[m²\]: a box for the palm, circles for the rest.
-pub(crate) fn cross_section(body: &Body, part: Part) -> (f64, f64) {
+pub(crate) fn cross_section(body: &Body, kind: BoneKind) -> (f64, f64) {
     let half_width = body.arm.half_width_m;
-    let radius = match part {
-        Part::Palm => {
+    let radius = match kind {
+        BoneKind::Palm => {
             let area = 2.0 * half_width * body.hand.palm_height_m;
             return (area, half_width * half_width / 3.0);
         }
         // A digit's radius is bounded by the spacing of the fingers.
-        Part::Digit => half_width.min(0.4 * body.hand.finger_spacing_m),
-        Part::UpperArm | Part::Forearm => half_width,
+        BoneKind::Digit => half_width.min(0.4 * body.hand.finger_spacing_m),
+        BoneKind::UpperArm | BoneKind::Forearm => half_width,
     };
     let square = radius * radius;
     (std::f64::consts::PI * square, square / 4.0)

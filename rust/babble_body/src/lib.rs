@@ -6,12 +6,12 @@ pub mod config;
 pub mod description;
 pub mod dynamics;
 mod error;
-pub mod inertia;
 pub mod joints;
+pub mod mass;
 pub mod obstacle;
-pub mod pose;
 pub mod robot;
 pub mod skeleton;
+pub mod visual;
 
 pub use arm::PlanarArm;
 pub use config::Body;

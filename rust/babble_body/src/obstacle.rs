@@ -6,7 +6,7 @@
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
-use crate::arm::{Placement, PlanarArm, Segment, rotate};
+use crate::arm::{ArmPose, PlanarArm, Segment, rotate};
 
 /// A vertical cylinder through the plane of motion.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -24,16 +24,16 @@ impl Obstacle {
         self.clearance_at(arm, &arm.place(q))
     }
 
-    /// [`Self::clearance`] for an arm whose placement is known.
+    /// [`Self::clearance`] for an arm whose pose is known.
     #[must_use]
-    pub fn clearance_at(&self, arm: &PlanarArm, placement: &Placement) -> f64 {
+    pub fn clearance_at(&self, arm: &PlanarArm, pose: &ArmPose) -> f64 {
         let upper = least_distance_squared(
             &arm.upper_segments,
-            unrotate(self.centre, placement.upper_direction),
+            unrotate(self.centre, pose.upper_direction),
         );
         let fore = least_distance_squared(
             &arm.fore_segments,
-            unrotate(self.centre - placement.elbow, placement.fore_direction),
+            unrotate(self.centre - pose.elbow, pose.fore_direction),
         );
         upper.min(fore).sqrt() - self.radius - arm.half_width
     }

@@ -9,9 +9,9 @@ use crate::config::Body;
 use crate::error::BodyError;
 use crate::joints::{JOINT_NAMES, Joints};
 
-/// What a bone belongs to.
+/// Which piece of arm or hand a bone is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
+pub enum BoneKind {
     /// Moves with the shoulder alone.
     UpperArm,
     /// Moves with the shoulder and the elbow.
@@ -25,8 +25,8 @@ pub enum Part {
 /// A straight link with round ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bone {
-    /// What it belongs to.
-    pub part: Part,
+    /// Which piece it is.
+    pub kind: BoneKind,
     /// Near end \[m\].
     pub a: Vector3<f64>,
     /// Far end \[m\].
@@ -72,11 +72,11 @@ impl Frame {
 }
 
 /// Angles \[rad\] of the 26 joints in the order of [`JOINT_NAMES`].
-pub type Posture = [f64; 26];
+pub type JointAngles = [f64; 26];
 
 /// The locked angles of `joints`, with the arm's two free joints at `q` \[rad\].
 #[must_use]
-pub fn posture(joints: &Joints, q: [f64; 2]) -> Posture {
+pub fn joint_angles(joints: &Joints, q: [f64; 2]) -> JointAngles {
     JOINT_NAMES.map(|name| match name {
         "shoulder" => q[0],
         "elbow" => q[1],
@@ -91,20 +91,25 @@ pub fn posture(joints: &Joints, q: [f64; 2]) -> Posture {
 /// All bones, from the upper arm to the little finger, and the point that reaches: the middle of
 /// the four fingertips.
 #[must_use]
-pub fn bones(body: &Body, posture: &Posture) -> (Vec<Bone>, Vector3<f64>) {
+pub fn bones(body: &Body, posture: &JointAngles) -> (Vec<Bone>, Vector3<f64>) {
     let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
     let mut bones = Vec::with_capacity(20);
     let shoulder = Frame::at(Vector3::zeros(), Rotation3::identity())
         .turn(&z, posture[0])
         .turn(&y, posture[1])
         .turn(&x, posture[2]);
-    let elbow =
-        push(&mut bones, Part::UpperArm, shoulder, body.arm.upper_arm_m).turn(&z, posture[3]);
-    let wrist = push(&mut bones, Part::Forearm, elbow, body.arm.forearm_m)
+    let elbow = push(
+        &mut bones,
+        BoneKind::UpperArm,
+        shoulder,
+        body.arm.upper_arm_m,
+    )
+    .turn(&z, posture[3]);
+    let wrist = push(&mut bones, BoneKind::Forearm, elbow, body.arm.forearm_m)
         .turn(&z, posture[4])
         .turn(&y, posture[5])
         .turn(&x, posture[6]);
-    let knuckles = push(&mut bones, Part::Palm, wrist, body.hand.palm_m);
+    let knuckles = push(&mut bones, BoneKind::Palm, wrist, body.hand.palm_m);
     digit(&mut bones, wrist, &body.hand.thumb_m, &posture[7..11], -1.0);
     let mut fingertip = Vector3::zeros();
     for (finger, (pivot, flexion)) in [(Some(11), 12), (None, 15), (Some(18), 19), (Some(22), 23)]
@@ -137,15 +142,15 @@ fn digit(
         if segment > 0 {
             frame = frame.turn(&Vector3::z(), side * angles[segment]);
         }
-        frame = push(bones, Part::Digit, frame, *length);
+        frame = push(bones, BoneKind::Digit, frame, *length);
     }
     frame.origin
 }
 
-fn push(bones: &mut Vec<Bone>, part: Part, frame: Frame, length: f64) -> Frame {
+fn push(bones: &mut Vec<Bone>, kind: BoneKind, frame: Frame, length: f64) -> Frame {
     let end = frame.forward(length);
     bones.push(Bone {
-        part,
+        kind,
         a: frame.origin,
         b: end.origin,
     });
@@ -156,7 +161,7 @@ fn push(bones: &mut Vec<Bone>, part: Part, frame: Frame, length: f64) -> Frame {
 /// inverse kinematics of Sect. III-A does not exist; the obstacle must be as tall as the arm.
 pub(crate) fn validate_plane(body: &Body) -> Result<(), BodyError> {
     const TOLERANCE_M: f64 = 1e-9;
-    let (bones, tip) = bones(body, &posture(&body.joints, [0.0, 0.5]));
+    let (bones, tip) = bones(body, &joint_angles(&body.joints, [0.0, 0.5]));
     if bones[0].b.z.abs() > TOLERANCE_M || body.joints["shoulder_roll"].locked_deg != Some(0.0) {
         return Err(BodyError::Geometry {
             problem:

@@ -4,8 +4,8 @@ mod grasping;
 mod spread;
 
 use babble_body::Body;
-use babble_body::config::{Engine, Fingers};
-use babble_body::robot::{Ball, Pull, Robot, Setup, World, towards};
+use babble_body::config::{EngineName, Fingers};
+use babble_body::robot::{Ball, MuscleCommand, Robot, Setup, World, towards};
 use grasping::{DT, FAR, ball_at_palm, reflex, run, setup};
 use nalgebra::Vector3;
 use proptest::prelude::*;
@@ -242,7 +242,8 @@ fn a_pressed_ball_is_in_balance() {
 /// both hold a ball.
 #[test]
 fn rapier_agrees() {
-    let engines = [Engine::Tree, Engine::Rapier].map(|engine| with(|body| body.engine = engine));
+    let engines =
+        [EngineName::Tree, EngineName::Rapier].map(|engine| with(|body| body.engine = engine));
     for fingers in [Fingers::Virtual, Fingers::Independent] {
         let robots = engines.clone().map(|robot| {
             let mut body = robot.body().clone();
@@ -301,9 +302,9 @@ proptest! {
         let limits = [grip.arm_muscles, grip.arm_muscles, grip.hand_muscles, grip.hand_muscles];
         for pull in pulls {
             let drive = std::array::from_fn(|i| if torque {
-                Pull::Torque(pull[i] * limits[i].torque_max)
+                MuscleCommand::Torque(pull[i] * limits[i].torque_max)
             } else {
-                Pull::EquilibriumPoint(robot.denormalised(pull.map(|x| 0.5 + 0.5 * x))[i])
+                MuscleCommand::EquilibriumPoint(robot.denormalised(pull.map(|x| 0.5 + 0.5 * x))[i])
             });
             run(&robot, &mut world, &drive, 0.5);
             for speed in robot.speeds(&world) {

@@ -6,13 +6,13 @@ use std::collections::HashSet;
 
 use babble_body::config::Fingers;
 use babble_body::description::{self, LinkDescription};
-use babble_body::inertia::Inertia;
+use babble_body::mass::MassProperties;
 use babble_body::robot::Solid;
 use babble_body::{Body, Dynamics, PlanarArm, Robot};
 use babble_eye::Shape;
 use grasping::{DT, FAR, setup};
 use nalgebra::{Isometry3, Matrix3, Point3, Translation3, UnitQuaternion, Vector3};
-use parry3d::mass_properties::MassProperties;
+use parry3d::mass_properties::MassProperties as ParryMass;
 use parry3d::math::Vector;
 use proptest::prelude::*;
 
@@ -33,21 +33,21 @@ fn solid() -> impl Strategy<Value = Solid> {
 }
 
 /// The same by parry.
-fn reference(solid: &Solid, density: f64) -> MassProperties {
+fn reference(solid: &Solid, density: f64) -> ParryMass {
     let vector = |v: &Vector3<f64>| Vector::new(v.x as f32, v.y as f32, v.z as f32);
     match solid {
         Solid::Capsule { a, b, radius } => {
-            MassProperties::from_capsule(density as f32, vector(a), vector(b), *radius as f32)
+            ParryMass::from_capsule(density as f32, vector(a), vector(b), *radius as f32)
         }
         Solid::Cuboid { centre, half } => {
-            let mut properties = MassProperties::from_cuboid(density as f32, vector(half));
+            let mut properties = ParryMass::from_cuboid(density as f32, vector(half));
             properties.local_com = vector(centre);
             properties
         }
     }
 }
 
-fn agree(ours: &Inertia, theirs: &MassProperties) -> Result<(), TestCaseError> {
+fn agree(ours: &MassProperties, theirs: &ParryMass) -> Result<(), TestCaseError> {
     let mass = f64::from(theirs.mass());
     prop_assert!(
         (ours.mass / mass - 1.0).abs() < 1e-5,
@@ -68,13 +68,13 @@ proptest! {
     /// diagonal for a turned capsule, and half an edge for a whole one.
     #[test]
     fn solids_weigh_what_parry_says(solid in solid(), density in 1.0..1e4_f64) {
-        agree(&Inertia::of(&solid, density), &reference(&solid, density))?;
+        agree(&MassProperties::of(&solid, density), &reference(&solid, density))?;
     }
 
     /// Catches a sum that forgets how far its parts are apart, or adds it with the wrong sign.
     #[test]
     fn sums_weigh_what_parry_says(solids in prop::collection::vec(solid(), 1..5)) {
-        let ours = Inertia::sum(solids.iter().map(|solid| Inertia::of(solid, 1100.0)));
+        let ours = MassProperties::sum(solids.iter().map(|solid| MassProperties::of(solid, 1100.0)));
         let theirs = solids.iter().map(|solid| reference(solid, 1100.0)).reduce(|a, b| a + b);
         agree(&ours, &theirs.unwrap())?;
     }
@@ -110,7 +110,7 @@ fn reaching_weighs_what_moves() {
         close(fore.inertia.centre.x, inertia.fore_centre[0]);
         close(fore.inertia.centre.y, inertia.fore_centre[1]);
         for (link, moment) in [(&upper, inertia.upper), (&fore, inertia.fore)] {
-            let Inertia {
+            let MassProperties {
                 mass,
                 centre,
                 inertia,
@@ -134,14 +134,14 @@ fn reaching_is_made_of_cylinders_and_a_box() {
     let [_, fore] = description::reaching(&body);
     let density = body.arm.density_kg_m3 as f32;
     let cylinder = |a: [f64; 3], length: f64, radius: f64| {
-        let mut rod = MassProperties::from_cylinder(density, length as f32 / 2.0, radius as f32);
+        let mut rod = ParryMass::from_cylinder(density, length as f32 / 2.0, radius as f32);
         // parry's cylinders lie along y.
         rod.principal_inertia_local_frame =
             parry3d::math::Rotation::from_rotation_z(-std::f32::consts::FRAC_PI_2);
         rod.local_com = Vector::new((a[0] + length / 2.0) as f32, a[1] as f32, a[2] as f32);
         rod
     };
-    let mut palm = MassProperties::from_cuboid(density, Vector::new(0.0275, 0.01, 0.03));
+    let mut palm = ParryMass::from_cuboid(density, Vector::new(0.0275, 0.01, 0.03));
     palm.local_com = Vector::new(0.13 + 0.0275, 0.0, 0.0);
     let fingers = [-1.5, -0.5, 0.5, 1.5].map(|i| cylinder([0.185, 0.0, 0.015 * i], 0.061, 0.006));
     let whole = fingers.into_iter().fold(palm, |sum, finger| sum + finger)

@@ -2,7 +2,7 @@
 
 use babble_body::arm::PlanarArm;
 use babble_body::config::Muscles;
-use babble_body::skeleton::{self, Part};
+use babble_body::skeleton::{self, BoneKind};
 use babble_body::{ArmState, Body, Dynamics};
 use proptest::prelude::*;
 
@@ -157,20 +157,20 @@ fn kinetic_energy_is_that_of_the_pieces() {
     };
     let at = |t: f64| {
         let q = [0, 1].map(|i| state.q[i] + t * state.v[i]);
-        skeleton::bones(&body, &skeleton::posture(&body.joints, q)).0
+        skeleton::bones(&body, &skeleton::joint_angles(&body.joints, q)).0
     };
     let mut energy = 0.0;
     for (before, after) in at(-H).into_iter().zip(at(H)) {
         let length = (before.b - before.a).norm();
-        let (section, square, turning) = match before.part {
-            Part::UpperArm => (std::f64::consts::PI * 1e-4, 1e-4 / 4.0, state.v[0]),
-            Part::Forearm => (
+        let (section, square, turning) = match before.kind {
+            BoneKind::UpperArm => (std::f64::consts::PI * 1e-4, 1e-4 / 4.0, state.v[0]),
+            BoneKind::Forearm => (
                 std::f64::consts::PI * 1e-4,
                 1e-4 / 4.0,
                 state.v[0] + state.v[1],
             ),
-            Part::Palm => (0.02 * 0.06, 1e-4 / 3.0, state.v[0] + state.v[1]),
-            Part::Digit => (
+            BoneKind::Palm => (0.02 * 0.06, 1e-4 / 3.0, state.v[0] + state.v[1]),
+            BoneKind::Digit => (
                 std::f64::consts::PI * 0.006 * 0.006,
                 0.006 * 0.006 / 4.0,
                 state.v[0] + state.v[1],

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use babble_body::arm::Segment;
-use babble_body::skeleton::{self, Part};
+use babble_body::skeleton::{self, BoneKind};
 use babble_body::{Body, PlanarArm};
 use nalgebra::Vector2;
 use proptest::prelude::*;
@@ -112,10 +112,10 @@ proptest! {
         let body = bent_wrist(wrist);
         let arm = PlanarArm::new(&body);
         let q = arm.denormalised(share);
-        let (bones, tip) = skeleton::bones(&body, &skeleton::posture(&body.joints, q));
-        let placement = arm.place(q);
-        prop_assert!((tip.xy() - placement.tip).norm() < 1e-12);
-        prop_assert!((bones[0].b.xy() - placement.elbow).norm() < 1e-12);
+        let (bones, tip) = skeleton::bones(&body, &skeleton::joint_angles(&body.joints, q));
+        let pose = arm.place(q);
+        prop_assert!((tip.xy() - pose.tip).norm() < 1e-12);
+        prop_assert!((bones[0].b.xy() - pose.elbow).norm() < 1e-12);
         prop_assert!(tip.z.abs() < 1e-12);
     }
 
@@ -125,19 +125,19 @@ proptest! {
     fn outline_covers_the_bones(bend in prop::collection::vec(0.0..1.0, 5)) {
         let body = bent_hand(&bend);
         let arm = PlanarArm::new(&body);
-        let (bones, _) = skeleton::bones(&body, &skeleton::posture(&body.joints, [0.0, 0.0]));
+        let (bones, _) = skeleton::bones(&body, &skeleton::joint_angles(&body.joints, [0.0, 0.0]));
         let elbow = Vector2::new(arm.upper, 0.0);
         let near = |segments: &[Segment], point| {
             segments.iter().map(|s| distance(s, point)).fold(f64::INFINITY, f64::min)
         };
-        for bone in bones.iter().filter(|bone| bone.part != Part::UpperArm) {
+        for bone in bones.iter().filter(|bone| bone.kind != BoneKind::UpperArm) {
             for end in [bone.a.xy(), bone.b.xy(), (bone.a.xy() + bone.b.xy()) / 2.0] {
                 prop_assert!(near(&arm.fore_segments, end - elbow) < 1e-8);
             }
         }
         let flat: Vec<Segment> = bones
             .iter()
-            .filter(|bone| bone.part != Part::UpperArm)
+            .filter(|bone| bone.kind != BoneKind::UpperArm)
             .map(|bone| Segment { a: bone.a.xy() - elbow, b: bone.b.xy() - elbow })
             .filter(|s| (s.b - s.a).norm() > 0.0)
             .collect();

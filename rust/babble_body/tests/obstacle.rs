@@ -22,7 +22,7 @@ fn parry_distance(body: &Body, obstacle: &Obstacle, q: [f64; 2]) -> f64 {
     let half = body.obstacle.height_m / 2.0;
     let end = |z| single(obstacle.centre.push(z));
     let axis = Segment::new(end(-half), end(half));
-    let (bones, _) = skeleton::bones(body, &skeleton::posture(&body.joints, q));
+    let (bones, _) = skeleton::bones(body, &skeleton::joint_angles(&body.joints, q));
     let to_bone = |bone: &skeleton::Bone| {
         let bone = Segment::new(single(bone.a), single(bone.b));
         let found = query::distance(&Pose::IDENTITY, &bone, &Pose::IDENTITY, &axis);

@@ -5,8 +5,8 @@ mod spread;
 
 use std::f64::consts::FRAC_PI_2;
 
-use babble_body::config::{Engine, Fingers};
-use babble_body::robot::{Ball, Pull, Robot, Setup, towards};
+use babble_body::config::{EngineName, Fingers};
+use babble_body::robot::{Ball, MuscleCommand, Robot, Setup, towards};
 use babble_body::{ArmState, Body, Dynamics, Obstacle, PlanarArm};
 use grasping::{DT, FAR, ball_at_palm, bytes, reflex, run, setup};
 use nalgebra::{Vector2, Vector3};
@@ -20,7 +20,7 @@ fn robot() -> Robot {
 /// The same in rapier.
 fn reference() -> Robot {
     let mut body = Body::paper();
-    body.engine = Engine::Rapier;
+    body.engine = EngineName::Rapier;
     Robot::new(&body, DT)
 }
 
@@ -113,12 +113,12 @@ proptest! {
     fn the_palm_is_where_kinematics_has_it(q1 in -1.3..3.1_f64, q2 in 0.1..2.2_f64, flexion in 0.0..1.5_f64) {
         let robot = robot();
         let world = robot.world(&setup([q1, q2, flexion, flexion], FAR));
-        let placement = PlanarArm::new(robot.body()).place([q1, q2]);
+        let pose = PlanarArm::new(robot.body()).place([q1, q2]);
         let palm = robot.palm(&world);
         let middle = 0.13 + 0.065 / 2.0;
-        let expected = placement.elbow + placement.fore_direction * middle;
+        let expected = pose.elbow + pose.fore_direction * middle;
         prop_assert!((palm.origin - expected.push(0.0)).norm() < 3e-6);
-        let side = Vector3::new(-placement.fore_direction.y, placement.fore_direction.x, 0.0);
+        let side = Vector3::new(-pose.fore_direction.y, pose.fore_direction.x, 0.0);
         prop_assert!((palm.rotation.column(1) - side).norm() < 3e-6);
         for (now, asked) in robot.posture(&world).into_iter().zip([q1, q2, flexion, flexion]) {
             prop_assert!((now - asked).abs() < 3e-6);
@@ -135,12 +135,12 @@ proptest! {
         let limits = [grip.arm_muscles, grip.arm_muscles, grip.hand_muscles, grip.hand_muscles];
         let torques = std::array::from_fn(|i| shares[i] * limits[i].torque_max);
         let before = robot.posture(&world);
-        run(&robot, &mut world, &torques.map(Pull::Torque), 0.1);
+        run(&robot, &mut world, &torques.map(MuscleCommand::Torque), 0.1);
         for (i, now) in robot.posture(&world).into_iter().enumerate() {
             let expected = before[i] + 0.1 * torques[i] / limits[i].kd;
             prop_assert!((now - expected).abs() < 4e-3, "joint {i}: {now} {expected}");
         }
-        run(&robot, &mut world, &torques.map(Pull::Torque), 8.0);
+        run(&robot, &mut world, &torques.map(MuscleCommand::Torque), 8.0);
         for (now, [low, high]) in robot.posture(&world).into_iter().zip(robot.ranges()) {
             prop_assert!(now > low - 0.01 && now < high + 0.01, "{now} not in [{low}, {high}]");
         }

@@ -85,7 +85,7 @@ impl Config {
             ),
             _ => {
                 return Err(EnvError::Option {
-                    option: "body",
+                    option: "config",
                     value: name.to_owned(),
                     known: PROFILES.join(", "),
                 });

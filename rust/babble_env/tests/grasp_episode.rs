@@ -4,7 +4,7 @@ mod playing;
 
 use std::sync::Arc;
 
-use babble_body::robot::{Drive, Pull, World, towards};
+use babble_body::robot::{MuscleCommand, MuscleCommands, World, towards};
 use babble_env::tasks::grasp::{GraspRequest, GraspState, Grip};
 use babble_env::{Batch, Control, GraspOptions, GraspTask, Outcome};
 use nalgebra::Vector2;
@@ -235,11 +235,13 @@ fn what_slips_is_lost() {
 }
 
 /// What drives the muscles in a step that left `state`.
-fn drive(task: &GraspTask, action: [f32; 4], state: &GraspState) -> Drive {
+fn drive(task: &GraspTask, action: [f32; 4], state: &GraspState) -> MuscleCommands {
     match task.options.control {
         Control::Torque => {
             let muscles = task.muscles();
-            std::array::from_fn(|i| Pull::Torque(f64::from(action[i]) * muscles[i].torque_max))
+            std::array::from_fn(|i| {
+                MuscleCommand::Torque(f64::from(action[i]) * muscles[i].torque_max)
+            })
         }
         _ => towards(state.equilibrium),
     }

@@ -2,7 +2,7 @@
 
 mod playing;
 
-use babble_body::pose;
+use babble_body::visual;
 use babble_env::batch::Record;
 use babble_env::tasks::grasp::{FOVEA_NEURONS, GraspRequest, GraspState, Region, see};
 use babble_env::{Autoreset, Config, Control, GraspOptions, GraspTask};
@@ -159,7 +159,7 @@ fn scene(task: &GraspTask, state: &GraspState) -> Vec<Primitive> {
     let mut scene = vec![task.robot.visible_object(&state.world, state.case.radius())];
     task.robot.push_visible(&state.world, &mut scene);
     let obstacle = state.case.obstacle.as_ref();
-    scene.extend(obstacle.map(|obstacle| pose::obstacle(&task.config.body, obstacle)));
+    scene.extend(obstacle.map(|obstacle| visual::obstacle(&task.config.body, obstacle)));
     let top = -task.config.body.hand.palm_height_m / 2.0 - 0.005;
     let table = Shape::Cuboid {
         centre: Vector3::new(0.0, 0.1, top - 0.01),

@@ -121,6 +121,6 @@ impl Pinhole {
 }
 
 /// Rotation matrix from its rows.
-pub(super) fn axes(right: Vector3<f64>, up: Vector3<f64>, forward: Vector3<f64>) -> Matrix3<f64> {
+pub(crate) fn axes(right: Vector3<f64>, up: Vector3<f64>, forward: Vector3<f64>) -> Matrix3<f64> {
     Matrix3::from_rows(&[right.transpose(), up.transpose(), forward.transpose()])
 }

@@ -1,11 +1,13 @@
 //! Centroid of the red pixels: O of Eq. 1.
 
-use super::piece::{Cutter, Piece};
-use super::raster::Buffer;
-use super::row::Lens;
-use super::surface::Surface;
-use super::window::Window;
-use super::{Pinhole, Primitive};
+use crate::camera::Pinhole;
+use crate::raster::decompose::Decomposer;
+use crate::raster::depth_buffer::DepthBuffer;
+use crate::raster::image_plane::ImagePlane;
+use crate::raster::surface::SurfaceKind;
+use crate::raster::visible_surface::VisibleSurface;
+use crate::raster::window::Window;
+use crate::scene::Primitive;
 
 /// Number and coordinate sums of a set of pixels.
 #[derive(Default)]
@@ -42,35 +44,37 @@ impl Pixels {
 /// only the target's window is looked at.
 #[must_use]
 pub fn red_centroid(scene: &[Primitive], camera: &Pinhole) -> Option<[f64; 2]> {
-    let mut cutter = Cutter::new(camera);
+    let mut decomposer = Decomposer::new(camera);
     for (index, primitive) in targets(scene) {
-        cutter.cut(index, &primitive.shape);
+        decomposer.add(index, &primitive.shape);
     }
-    let window = cutter
-        .pieces
+    let window = decomposer
+        .surfaces
         .iter()
-        .map(|piece| piece.window)
+        .map(|surface| surface.window)
         .reduce(|all, window| all.hull(&window))?;
-    let red = cutter.pieces.len();
-    let farthest = farthest(&cutter.pieces);
-    cutter.look_at(window);
+    let red = decomposer.surfaces.len();
+    let farthest = farthest(&decomposer.surfaces);
+    decomposer.set_view(window);
     for (index, primitive) in scene.iter().enumerate() {
         if !primitive.material.target {
-            cutter.cut(index, &primitive.shape);
+            decomposer.add(index, &primitive.shape);
         }
     }
-    let Cutter { lens, pieces, .. } = cutter;
-    let (red, others) = pieces.split_at(red);
+    let Decomposer {
+        plane, surfaces, ..
+    } = decomposer;
+    let (red, others) = surfaces.split_at(red);
     let mut occluders = others
         .iter()
-        .filter(|piece| {
-            let part = piece.window.overlap(&window);
-            !part.is_empty() && piece.nearest_in(&part, &lens) > farthest
+        .filter(|surface| {
+            let part = surface.window.overlap(&window);
+            !part.is_empty() && surface.nearest_in(&part, &plane) > farthest
         })
         .peekable();
     match red {
-        [piece] if occluders.peek().is_none() => lone(piece, &lens),
-        _ => drawn(red, occluders, window, &lens),
+        [surface] if occluders.peek().is_none() => lone(surface, &plane),
+        _ => drawn(red, occluders, window, &plane),
     }
 }
 
@@ -81,40 +85,45 @@ fn targets(scene: &[Primitive]) -> impl Iterator<Item = (usize, &Primitive)> {
         .filter(|(_, primitive)| primitive.material.target)
 }
 
-/// A bound below the inverse depths of the pieces.
-fn farthest(pieces: &[Piece]) -> f64 {
-    pieces
+/// A bound below the inverse depths of the surfaces.
+fn farthest(surfaces: &[VisibleSurface]) -> f64 {
+    surfaces
         .iter()
-        .map(|piece| match &piece.surface {
-            Surface::Ball(ball, _) => 1.0 / (ball.centre.z + ball.radius),
+        .map(|surface| match &surface.kind {
+            SurfaceKind::Ball(ball, _) => 1.0 / (ball.centre.z + ball.radius),
             _ => 0.0,
         })
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Centroid of a piece that nothing hides: a ball's rows in closed form.
-fn lone(piece: &Piece, lens: &Lens) -> Option<[f64; 2]> {
-    if !matches!(piece.surface, Surface::Ball(..)) {
-        return drawn(std::slice::from_ref(piece), [].iter(), piece.window, lens);
+/// Centroid of a surface that nothing hides: a ball's rows in closed form.
+fn lone(surface: &VisibleSurface, plane: &ImagePlane) -> Option<[f64; 2]> {
+    if !matches!(surface.kind, SurfaceKind::Ball(..)) {
+        return drawn(
+            std::slice::from_ref(surface),
+            [].iter(),
+            surface.window,
+            plane,
+        );
     }
     let mut pixels = Pixels::default();
-    piece.rows(&piece.window, lens, |j, columns| pixels.add(columns, j));
+    surface.rows(&surface.window, plane, |j, columns| pixels.add(columns, j));
     pixels.centroid()
 }
 
 /// Centroid by drawing the window.
 fn drawn<'a>(
-    red: &[Piece],
-    others: impl Iterator<Item = &'a Piece>,
+    red: &[VisibleSurface],
+    others: impl Iterator<Item = &'a VisibleSurface>,
     window: Window,
-    lens: &Lens,
+    plane: &ImagePlane,
 ) -> Option<[f64; 2]> {
-    let mut buffer = Buffer::new(window);
-    for piece in others {
-        buffer.draw(1, piece, lens);
+    let mut buffer = DepthBuffer::new(window);
+    for surface in others {
+        buffer.draw(1, surface, plane);
     }
-    for piece in red {
-        buffer.draw(0, piece, lens);
+    for surface in red {
+        buffer.draw(0, surface, plane);
     }
     let mut pixels = Pixels::default();
     for j in window.rows.0..window.rows.1 {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::EyeError;
+use crate::error::EyeError;
 
 /// Order of the eye's rotations, and the gaze at zero pan and tilt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

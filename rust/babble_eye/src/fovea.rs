@@ -3,10 +3,11 @@
 
 use image::{GrayImage, Luma, RgbImage};
 
-use super::ink::{Ink, WHITE};
-use super::shading::Painter;
-use super::window::Window;
-use super::{Pinhole, Primitive};
+use crate::camera::Pinhole;
+use crate::raster::window::Window;
+use crate::render::painter::Painter;
+use crate::render::pixel_format::{PixelFormat, WHITE};
+use crate::scene::Primitive;
 
 /// Edge of the image that the fovea is the middle of \[pixel\], the paper's.
 const IMAGE: usize = 630;
@@ -59,7 +60,7 @@ pub fn foveal_shape(scene: &[Primitive], camera: &Pinhole, shape: &mut [f32; SHA
 }
 
 /// The window of the image that is drawn, from a camera at the eye's sampling.
-fn draw<I: Ink + Default>(scene: &[Primitive], camera: &Pinhole) -> Vec<I> {
+fn draw<I: PixelFormat + Default>(scene: &[Primitive], camera: &Pinhole) -> Vec<I> {
     let camera = Pinhole {
         width: IMAGE,
         height: IMAGE,

@@ -5,8 +5,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::camera::axes;
-use super::{EyeConfig, EyeError, GazeFrame, Pinhole};
+use crate::camera::{Pinhole, axes};
+use crate::config::{EyeConfig, GazeFrame};
+use crate::error::EyeError;
 
 /// Where the eye looks.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -24,8 +25,8 @@ pub struct Eye {
     config: EyeConfig,
     position: Vector3<f64>,
     /// Lowest and highest \[rad\].
-    pub(super) pan: [f64; 2],
-    pub(super) tilt: [f64; 2],
+    pub(crate) pan: [f64; 2],
+    pub(crate) tilt: [f64; 2],
     /// The camera at zero pan and tilt.
     zero: Pinhole,
 }
@@ -170,7 +171,7 @@ impl Eye {
     }
 
     /// Gazes that between them see all around below the eye.
-    pub(super) fn search_gazes(&self) -> impl Iterator<Item = Gaze> {
+    pub(crate) fn search_gazes(&self) -> impl Iterator<Item = Gaze> {
         let [quarter, half] = [FRAC_PI_2, PI];
         let eighth = 0.5 * quarter;
         let gazes = match self.config.frame {

@@ -4,24 +4,14 @@
 mod camera;
 mod centroid;
 mod config;
-mod depth;
 mod error;
 mod fovea;
 mod gaze;
-mod ground;
-mod ink;
-mod light;
-mod outline;
-mod piece;
+mod onlooker;
 mod raster;
 mod reflex;
-mod row;
+mod render;
 mod scene;
-mod shading;
-mod shadow;
-mod surface;
-mod view;
-mod window;
 
 pub use camera::Pinhole;
 pub use centroid::red_centroid;
@@ -32,8 +22,8 @@ pub use fovea::{
     shape_picture,
 };
 pub use gaze::{Eye, Gaze};
-pub use light::{TOWARDS_KEY, is_red};
-pub use raster::{Raster, rasterise};
+pub use onlooker::third_person;
+pub use raster::depth_buffer::{Raster, rasterise};
+pub use render::light::{TOWARDS_KEY, is_red};
+pub use render::picture::{draw_red_over, render_rgb, render_rgb_into, render_smooth};
 pub use scene::{Material, Primitive, Shape};
-pub use shading::{draw_red_over, render_rgb, render_rgb_into, render_smooth};
-pub use view::third_person;

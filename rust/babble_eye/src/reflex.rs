@@ -6,7 +6,10 @@
 //! \[pixel\]. A central pixel of a pinhole image spans 0.315°, so one step
 //! takes away 0.605 of a small error.
 
-use super::{Eye, EyeError, Gaze, Primitive, red_centroid};
+use crate::centroid::red_centroid;
+use crate::error::EyeError;
+use crate::gaze::{Eye, Gaze};
+use crate::scene::Primitive;
 
 /// The reflex rests once a step turns pan and tilt by less than this \[rad\]:
 /// 0.02°, a tenth of a pixel of offset, about what counting pixels resolves.
@@ -29,13 +32,11 @@ impl Eye {
         }))
     }
 
-    /// Where the reflex of Eq. 1 comes to rest, from the start gaze or, if no
-    /// red is seen from there, from the first of a short list of gazes that
-    /// see it.
+    /// The gaze at which the reflex of Eq. 1 comes to rest. It begins at the start gaze or, if no red
+    /// is seen from there, at the first gaze of a short list that sees red.
     ///
-    /// It rests when a step is below 0.02°, when it is back where it was two
-    /// steps ago, or after 100 steps. If the target lies outside of the
-    /// ranges it rests at their edge.
+    /// It rests when a step is below 0.02°, when it is back where it was two steps ago, or after 100
+    /// steps. If the target lies outside of the ranges, it rests at their edge.
     ///
     /// # Errors
     /// [`EyeError::TargetNotSeen`] if all of those images have no red pixel.

@@ -1,6 +1,6 @@
 //! Whether a world that somebody else wrote is one that this robot can go on with.
 
-use super::muscles::Pull;
+use super::muscles::MuscleCommand;
 use super::rapier::Past;
 use super::world::World;
 use super::{FASTEST_TURN, Robot, Setup, Stepper};
@@ -98,8 +98,8 @@ impl Robot {
             .flat_map(|spell| spell.drive.iter().enumerate());
         for (muscle, pull) in drives {
             let (value, [low, high]) = match *pull {
-                Pull::EquilibriumPoint(point) => (point, self.ranges[muscle]),
-                Pull::Torque(torque) => {
+                MuscleCommand::EquilibriumPoint(point) => (point, self.ranges[muscle]),
+                MuscleCommand::Torque(torque) => {
                     let most = self.torque_max(muscle);
                     (torque, [-most, most])
                 }

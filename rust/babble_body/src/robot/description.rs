@@ -1,7 +1,7 @@
 //! Arm and hand as plain data.
 
 use super::Robot;
-use super::links::{Link, Muscle, Part, Solid};
+use super::links::{ContactRegion, Link, Muscle, Solid};
 use crate::config::Fingers;
 use crate::description::{LinkDescription, NamedSolid};
 use crate::joints::ARM_JOINTS;
@@ -61,11 +61,11 @@ impl Robot {
 }
 
 /// The solids of a link; a virtual finger's link carries one of each finger.
-fn named(link: &str, solids: &[(Part, Solid)]) -> Vec<NamedSolid> {
+fn named(link: &str, solids: &[(ContactRegion, Solid)]) -> Vec<NamedSolid> {
     let of_digits = solids.len() == FINGERS.len();
-    let name = |i: usize, part: Part| match part {
-        Part::Palm => "palm".to_owned(),
-        Part::Fingers if of_digits => link.replace("finger", FINGERS[i]),
+    let name = |i: usize, part: ContactRegion| match part {
+        ContactRegion::Palm => "palm".to_owned(),
+        ContactRegion::Fingers if of_digits => link.replace("finger", FINGERS[i]),
         _ => link.to_owned(),
     };
     solids

@@ -7,11 +7,11 @@ use nalgebra::Vector3;
 use serde::Serialize;
 
 use crate::config::{Body, Fingers, Muscles};
-use crate::inertia::Inertia;
+use crate::mass::MassProperties;
 
 /// What a link belongs to, as touch tells it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
+pub enum ContactRegion {
     /// Upper arm or forearm.
     Arm,
     /// The palm.
@@ -97,7 +97,7 @@ pub(super) struct Link {
     pub(super) direction: f64,
     /// Whether the joint turns clockwise.
     pub(super) clockwise: bool,
-    pub(super) solids: Vec<(Part, Solid)>,
+    pub(super) solids: Vec<(ContactRegion, Solid)>,
 }
 
 impl Link {
@@ -107,9 +107,9 @@ impl Link {
     }
 
     /// Its mass, as the sum of its solids, which may overlap.
-    pub(super) fn inertia(&self, density: f64) -> Inertia {
+    pub(super) fn inertia(&self, density: f64) -> MassProperties {
         let solids = self.solids.iter();
-        Inertia::sum(solids.map(|(_, solid)| Inertia::of(solid, density)))
+        MassProperties::sum(solids.map(|(_, solid)| MassProperties::of(solid, density)))
     }
 }
 
@@ -150,7 +150,7 @@ fn upper_arm(body: &Body) -> Link {
         direction: 0.0,
         clockwise: false,
         solids: vec![(
-            Part::Arm,
+            ContactRegion::Arm,
             capsule(body.arm.upper_arm_m, 0.0, body.arm.half_width_m),
         )],
     }
@@ -170,8 +170,8 @@ fn forearm(body: &Body) -> Link {
         direction: 0.0,
         clockwise: false,
         solids: vec![
-            (Part::Arm, capsule(length, 0.0, half_width)),
-            (Part::Palm, palm),
+            (ContactRegion::Arm, capsule(length, 0.0, half_width)),
+            (ContactRegion::Palm, palm),
         ],
     }
 }
@@ -180,7 +180,7 @@ fn forearm(body: &Body) -> Link {
 fn finger(links: &mut Vec<Link>, body: &Body, height: f64, heights: &[f64]) {
     let knuckle = Vector3::new(body.arm.forearm_m + palm_length(body), 0.0, height);
     let base = Digit {
-        part: Part::Fingers,
+        part: ContactRegion::Fingers,
         muscle: Muscle::Finger,
         origin: knuckle,
         direction: 0.0,
@@ -198,7 +198,7 @@ fn finger(links: &mut Vec<Link>, body: &Body, height: f64, heights: &[f64]) {
 fn thumb(links: &mut Vec<Link>, body: &Body) {
     let [along, aside] = body.grip.thumb_base_m;
     let base = Digit {
-        part: Part::Thumb,
+        part: ContactRegion::Thumb,
         muscle: Muscle::Thumb,
         origin: Vector3::new(body.arm.forearm_m + along, aside, 0.0),
         direction: body.grip.thumb_direction_deg.to_radians(),
@@ -209,7 +209,7 @@ fn thumb(links: &mut Vec<Link>, body: &Body) {
 
 /// Where a digit begins and how it flexes.
 struct Digit {
-    part: Part,
+    part: ContactRegion,
     muscle: Muscle,
     origin: Vector3<f64>,
     direction: f64,

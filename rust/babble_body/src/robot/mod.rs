@@ -18,13 +18,13 @@ mod world;
 
 use nalgebra::Vector3;
 
-use crate::config::{Body, Engine};
+use crate::config::{Body, EngineName};
 use crate::obstacle::Obstacle;
 pub use kinematics::Frame;
 use kinematics::{MAX_JOINTS, place};
+pub use links::{ContactRegion, Solid};
 use links::{FOREARM, Link};
-pub use links::{Part, Solid};
-pub use muscles::{Drive, Posture, Pull, towards};
+pub use muscles::{MuscleCommand, MuscleCommands, Posture, towards};
 pub use touch::Touch;
 use world::MovingBall;
 pub use world::World;
@@ -63,7 +63,7 @@ pub struct Robot {
     body: Body,
     links: Vec<Link>,
     /// What each solid of the links belongs to.
-    parts: Vec<Part>,
+    parts: Vec<ContactRegion>,
     ranges: [[f64; 2]; 4],
     dt: f64,
     stepper: Stepper,
@@ -87,8 +87,10 @@ impl Robot {
                 .flat_map(|link| link.solids.iter().map(|&(part, _)| part))
                 .collect(),
             stepper: match body.engine {
-                Engine::Tree => Stepper::Tree(Box::new(tree::Tree::new(body, &links, dt))),
-                Engine::Rapier => Stepper::Rapier(Box::new(rapier::Rapier::new(body, &links, dt))),
+                EngineName::Tree => Stepper::Tree(Box::new(tree::Tree::new(body, &links, dt))),
+                EngineName::Rapier => {
+                    Stepper::Rapier(Box::new(rapier::Rapier::new(body, &links, dt)))
+                }
             },
             body: body.clone(),
             links,
@@ -173,7 +175,7 @@ impl Robot {
     }
 
     /// One physics step.
-    pub fn step(&self, world: &mut World, drive: &Drive) {
+    pub fn step(&self, world: &mut World, drive: &MuscleCommands) {
         let springs =
             std::array::from_fn(|i| self.spring(drive, i.min(self.links.len() - 1), world.q[i]));
         match &self.stepper {

@@ -10,7 +10,7 @@ pub type Posture = [f64; 4];
 
 /// What moves a joint, or every joint of a digit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub enum Pull {
+pub enum MuscleCommand {
     /// Muscles with this equilibrium point \[rad\], Eq. 2.
     EquilibriumPoint(f64),
     /// This torque on top of the muscles' damping \[N·m\].
@@ -18,12 +18,12 @@ pub enum Pull {
 }
 
 /// What moves shoulder, elbow, thumb and virtual finger.
-pub type Drive = [Pull; 4];
+pub type MuscleCommands = [MuscleCommand; 4];
 
 /// Muscles that pull towards a posture.
 #[must_use]
-pub fn towards(posture: Posture) -> Drive {
-    posture.map(Pull::EquilibriumPoint)
+pub fn towards(posture: Posture) -> MuscleCommands {
+    posture.map(MuscleCommand::EquilibriumPoint)
 }
 
 /// What a joint feels beside its damping: `stiffness (rest − q) + torque`.
@@ -40,24 +40,26 @@ pub(super) struct Spring {
 impl Robot {
     /// What `drive` does to a joint at `q` \[rad\]. A torque ends at a stop behind the joint range,
     /// which is as stiff as the muscles.
-    pub(super) fn spring(&self, drive: &Drive, joint: usize, q: f64) -> Spring {
+    pub(super) fn spring(&self, drive: &MuscleCommands, joint: usize, q: f64) -> Spring {
         let muscle = self.links[joint].muscle;
         let kp = muscle.settings(&self.body).kp;
         let [low, high] = self.ranges[muscle.index()];
         match drive[muscle.index()] {
-            Pull::EquilibriumPoint(point) => Spring {
+            MuscleCommand::EquilibriumPoint(point) => Spring {
                 stiffness: kp,
                 rest: point,
                 torque: 0.0,
             },
-            Pull::Torque(torque) if (q > high && torque > 0.0) || (q < low && torque < 0.0) => {
+            MuscleCommand::Torque(torque)
+                if (q > high && torque > 0.0) || (q < low && torque < 0.0) =>
+            {
                 Spring {
                     stiffness: kp,
                     rest: q.clamp(low, high),
                     torque: 0.0,
                 }
             }
-            Pull::Torque(torque) => Spring {
+            MuscleCommand::Torque(torque) => Spring {
                 stiffness: 0.0,
                 rest: q,
                 torque,

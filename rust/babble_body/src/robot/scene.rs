@@ -3,9 +3,9 @@
 use nalgebra::Vector3;
 
 use super::kinematics::{Frame, place};
-use super::links::{Part, Solid};
+use super::links::{ContactRegion, Solid};
 use super::{Robot, World};
-use crate::pose::{FOREARM, SKIN, SLEEVE};
+use crate::visual::{FOREARM, SKIN, SLEEVE};
 use babble_eye::{Material, Primitive, Shape};
 
 impl Robot {
@@ -27,11 +27,11 @@ impl Robot {
     }
 }
 
-fn material(part: Part, link: usize) -> Material {
+fn material(part: ContactRegion, link: usize) -> Material {
     match part {
-        Part::Arm if link == 0 => SLEEVE,
-        Part::Arm => FOREARM,
-        Part::Palm | Part::Thumb | Part::Fingers => SKIN,
+        ContactRegion::Arm if link == 0 => SLEEVE,
+        ContactRegion::Arm => FOREARM,
+        ContactRegion::Palm | ContactRegion::Thumb | ContactRegion::Fingers => SKIN,
     }
 }
 

@@ -1,7 +1,7 @@
 //! What touches what, and how hard.
 
 use super::Robot;
-use super::links::Part;
+use super::links::ContactRegion;
 use super::world::World;
 
 /// Solids of arm and hand: two of the arm, the palm, four fingers and a thumb.
@@ -58,10 +58,10 @@ impl Robot {
         for (part, impulse) in self.parts.iter().zip(world.impulses) {
             let force = impulse / self.dt;
             match part {
-                Part::Arm => touch.arm += force,
-                Part::Palm => touch.palm += force,
-                Part::Thumb => touch.thumb += force,
-                Part::Fingers => touch.fingers += force,
+                ContactRegion::Arm => touch.arm += force,
+                ContactRegion::Palm => touch.palm += force,
+                ContactRegion::Thumb => touch.thumb += force,
+                ContactRegion::Fingers => touch.fingers += force,
             }
         }
         touch

@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each test file uses some of it")]
 
-use babble_body::robot::{Ball, Drive, Posture, Robot, Setup, World, towards};
+use babble_body::robot::{Ball, MuscleCommands, Posture, Robot, Setup, World, towards};
 
 pub(crate) const DT: f64 = 0.005;
 /// A ball out of everybody's way.
@@ -40,13 +40,13 @@ pub(crate) fn ball_at_palm(robot: &Robot, arm: [f64; 2], radius: f64) -> World {
 }
 
 /// The reflex's equilibrium points with the arm in `arm` \[rad\].
-pub(crate) fn reflex(robot: &Robot, arm: [f64; 2]) -> Drive {
+pub(crate) fn reflex(robot: &Robot, arm: [f64; 2]) -> MuscleCommands {
     let [thumb, finger] = robot.body().grip.reflex_deg.map(f64::to_radians);
     towards([arm[0], arm[1], thumb, finger])
 }
 
 /// Steps for `seconds`.
-pub(crate) fn run(robot: &Robot, world: &mut World, drive: &Drive, seconds: f64) {
+pub(crate) fn run(robot: &Robot, world: &mut World, drive: &MuscleCommands, seconds: f64) {
     for _ in 0..(seconds / DT).round() as usize {
         robot.step(world, drive);
     }

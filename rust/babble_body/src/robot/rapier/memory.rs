@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::State;
 use crate::robot::kinematics::MAX_JOINTS;
-use crate::robot::muscles::{Drive, Pull};
+use crate::robot::muscles::{MuscleCommand, MuscleCommands};
 use crate::robot::world::World;
 
 /// The engine's state and what led to it.
@@ -50,24 +50,24 @@ pub(in crate::robot) struct Past {
 /// Steps that are driven alike.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(in crate::robot) struct Spell {
-    pub(in crate::robot) drive: Drive,
+    pub(in crate::robot) drive: MuscleCommands,
     pub(in crate::robot) support: bool,
     pub(in crate::robot) steps: u32,
 }
 
 impl Spell {
     /// To the bit: a zero's sign goes on into the motion.
-    fn is(&self, drive: &Drive, support: bool) -> bool {
-        let bits = |pull: &Pull| match *pull {
-            Pull::EquilibriumPoint(point) => (false, point.to_bits()),
-            Pull::Torque(torque) => (true, torque.to_bits()),
+    fn is(&self, drive: &MuscleCommands, support: bool) -> bool {
+        let bits = |pull: &MuscleCommand| match *pull {
+            MuscleCommand::EquilibriumPoint(point) => (false, point.to_bits()),
+            MuscleCommand::Torque(torque) => (true, torque.to_bits()),
         };
         self.support == support && self.drive.iter().map(bits).eq(drive.iter().map(bits))
     }
 }
 
 impl Past {
-    pub(super) fn add(&mut self, drive: &Drive, support: bool) {
+    pub(super) fn add(&mut self, drive: &MuscleCommands, support: bool) {
         match self.spells.last_mut() {
             Some(last) if last.is(drive, support) => last.steps += 1,
             _ => self.spells.push(Spell {

@@ -12,7 +12,7 @@ use rapier3d::prelude::*;
 pub(in crate::robot) use self::memory::{Memory, Past};
 use self::seam::{from_vector, vector};
 use super::GRAVITY;
-use super::muscles::{Drive, Spring};
+use super::muscles::{MuscleCommands, Spring};
 use super::touch::{SLOTS, SOLIDS};
 use super::world::World;
 
@@ -94,7 +94,7 @@ pub(super) struct Rapier {
 impl Rapier {
     /// One physics step with the springs that `drive` is. The engine's own state is made from the
     /// world's at the first one.
-    pub(super) fn step(&self, world: &mut World, drive: &Drive, springs: &[Spring]) {
+    pub(super) fn step(&self, world: &mut World, drive: &MuscleCommands, springs: &[Spring]) {
         let mut memory = world
             .rapier
             .take()

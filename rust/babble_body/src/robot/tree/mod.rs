@@ -38,10 +38,10 @@ pub(super) struct Tree {
     links: Vec<Link>,
     inertias: Vec<Planar>,
     damping: Vec<f64>,
-    solids: Vec<Placement>,
+    solids: Vec<AttachedSolid>,
     sparsity: Sparsity,
     object: config::Object,
-    contact: config::Contact,
+    contact: config::ContactModel,
     /// Half the obstacle's height \[m\].
     half_height: f64,
     dt: f64,
@@ -49,7 +49,7 @@ pub(super) struct Tree {
 
 /// A solid and the link that carries it.
 #[derive(Debug, Clone, Copy)]
-struct Placement {
+struct AttachedSolid {
     link: usize,
     solid: Solid,
 }
@@ -64,7 +64,7 @@ impl Tree {
     /// The robot of `body`, stepped by `dt` \[s\].
     pub(super) fn new(body: &Body, links: &[Link], dt: f64) -> Self {
         let solids = |(link, of): (usize, &Link)| {
-            let place = move |&(_, solid): &(_, Solid)| Placement { link, solid };
+            let place = move |&(_, solid): &(_, Solid)| AttachedSolid { link, solid };
             of.solids.iter().map(place).collect::<Vec<_>>()
         };
         Self {

@@ -59,7 +59,7 @@ impl Term {
 
 impl Tree {
     pub(super) fn terms(&self, world: &World, contacts: Vec<Contact>) -> Vec<Term> {
-        let config::Contact {
+        let config::ContactModel {
             stiffness_n_m,
             relaxation_s,
             stiction_m_s,

@@ -1,6 +1,8 @@
 //! One episode of grasping: `GraspState` is all that changes.
 
-use babble_body::robot::{Ball, Drive, Posture, Pull, Setup, Touch, World, towards};
+use babble_body::robot::{
+    Ball, MuscleCommand, MuscleCommands, Posture, Setup, Touch, World, towards,
+};
 use babble_eye::Gaze;
 use serde::{Deserialize, Serialize};
 
@@ -334,7 +336,7 @@ impl GraspState {
     }
 
     /// What an action asks of the muscles, and the equilibrium points that it leaves.
-    fn drive(&mut self, task: &GraspTask, action: [f64; 4]) -> Drive {
+    fn drive(&mut self, task: &GraspTask, action: [f64; 4]) -> MuscleCommands {
         match task.options.control {
             Control::Torque => {
                 let muscles = task.muscles();
@@ -342,7 +344,7 @@ impl GraspState {
                 let posture = task.robot.posture(&self.world);
                 // The posture whose springs would pull as hard.
                 self.equilibrium = std::array::from_fn(|i| posture[i] + torques[i] / muscles[i].kp);
-                torques.map(Pull::Torque)
+                torques.map(MuscleCommand::Torque)
             }
             Control::Posture => {
                 let share = action.map(|a| 0.5 + 0.5 * a);
@@ -359,7 +361,7 @@ impl GraspState {
     }
 
     /// The enclosure reflex in place of what the action asks of the hand.
-    fn with_reflex(&mut self, task: &GraspTask, asked: Drive) -> Drive {
+    fn with_reflex(&mut self, task: &GraspTask, asked: MuscleCommands) -> MuscleCommands {
         if !self.reflex {
             return asked;
         }
@@ -369,8 +371,8 @@ impl GraspState {
         [
             shoulder,
             elbow,
-            Pull::EquilibriumPoint(thumb),
-            Pull::EquilibriumPoint(finger),
+            MuscleCommand::EquilibriumPoint(thumb),
+            MuscleCommand::EquilibriumPoint(finger),
         ]
     }
 

@@ -1,7 +1,7 @@
 //! What the eye, and a person, sees of an episode.
 
-use babble_body::pose;
 use babble_body::robot::World;
+use babble_body::visual;
 use image::RgbImage;
 use nalgebra::{Vector2, Vector3};
 
@@ -43,9 +43,9 @@ pub(super) fn picture(
             .iter()
             .map(|moment| Vector2::from(moment.palm))
             .collect();
-        pose::push_trail(&mut things, &palms);
+        visual::push_trail(&mut things, &palms);
         push_goal(&mut things, state);
-        pose::push_surroundings(&mut things, &task.config.body, gaze, &task.eye);
+        visual::push_surroundings(&mut things, &task.config.body, gaze, &task.eye);
     }
     let scene = Scene {
         things: &things,
@@ -64,6 +64,6 @@ fn world_at(task: &GraspTask, moment: &Moment) -> World {
 /// Where the object is to be carried, on the ground.
 fn push_goal(things: &mut Vec<babble_eye::Primitive>, state: &GraspState) {
     if let Some(goal) = state.case.goal {
-        things.push(pose::goal(goal));
+        things.push(visual::goal(goal));
     }
 }

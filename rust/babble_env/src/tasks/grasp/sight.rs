@@ -1,7 +1,7 @@
 //! What the eye sees of a grasping episode: Eq. 1 on the image, and the fovea's edges.
 
-use babble_body::pose;
 use babble_body::robot::World;
+use babble_body::visual;
 use babble_eye::{Gaze, Material, Primitive, SHAPE_LEN, Shape, foveal_shape};
 use nalgebra::{Matrix3, Vector3};
 
@@ -22,7 +22,7 @@ pub(super) fn scene(task: &GraspTask, world: &World, case: &GraspCase) -> Vec<Pr
     scene.push(task.robot.visible_object(world, case.radius()));
     task.robot.push_visible(world, &mut scene);
     if let Some(obstacle) = &case.obstacle {
-        scene.push(pose::obstacle(&task.config.body, obstacle));
+        scene.push(visual::obstacle(&task.config.body, obstacle));
     }
     scene.push(table(task));
     scene

@@ -1,6 +1,6 @@
 //! The scene of a picture of reaching.
 
-use babble_body::pose;
+use babble_body::visual;
 use babble_eye::Primitive;
 use image::RgbImage;
 use nalgebra::Vector2;
@@ -51,17 +51,17 @@ fn things(
     view: View,
 ) -> Vec<Primitive> {
     let body = &task.config.body;
-    let mut things = vec![pose::target(body, state.case.target)];
+    let mut things = vec![visual::target(body, state.case.target)];
     if let Some(obstacle) = &state.case.obstacle {
-        things.push(pose::obstacle(body, obstacle));
+        things.push(visual::obstacle(body, obstacle));
     }
-    pose::push_robot(&mut things, body, q);
+    visual::push_robot(&mut things, body, q);
     if view == View::ThirdPerson {
         let tips: Vec<Vector2<f64>> = trail.iter().map(|&q| task.arm.fingertip(q)).collect();
-        pose::push_trail(&mut things, &tips);
-        pose::push_surroundings(&mut things, body, state.gaze, &task.eye);
+        visual::push_trail(&mut things, &tips);
+        visual::push_surroundings(&mut things, body, state.gaze, &task.eye);
     } else {
-        things.push(pose::ground(-body.obstacle.height_m / 2.0));
+        things.push(visual::ground(-body.obstacle.height_m / 2.0));
     }
     things
 }

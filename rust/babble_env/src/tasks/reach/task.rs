@@ -1,6 +1,6 @@
 //! Everything about reaching that stays the same within and between episodes.
 
-use babble_body::pose;
+use babble_body::visual;
 use babble_body::{ArmState, Body, ContactWatch, Dynamics, Obstacle, PlanarArm};
 use babble_eye::{Eye, Gaze, Pinhole};
 use image::RgbImage;
@@ -195,7 +195,7 @@ impl ReachTask {
     /// # Errors
     /// [`EnvError::Body`] when the eye cannot find the target.
     pub fn foveate(&self, case: &ReachCase) -> Result<Gaze, EnvError> {
-        let scene = [pose::target(&self.config.body, case.target)];
+        let scene = [visual::target(&self.config.body, case.target)];
         Ok(self
             .eye
             .foveate(&scene, self.eye.rest())

@@ -1,102 +1,47 @@
-//! A primitive, taken apart into surfaces, each in a window.
+//! Decomposes the primitives of a scene into the surfaces that a camera may see.
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::depth::Depth;
-use super::outline::Outline;
-use super::row::{Lens, Origin};
-use super::surface::{Ends, Flat, Quadric, Surface};
-use super::window::{Frustum, Window, ball_window, corners_window, meet};
-use super::{Pinhole, Primitive, Shape};
+use super::image_plane::ImagePlane;
+use super::origin::Origin;
+use super::surface::{Ends, FlatSurface, Quadric, SurfaceKind};
+use super::visible_surface::VisibleSurface;
+use super::window::{Frustum, Window, ball_window, corners_window};
+use crate::camera::Pinhole;
+use crate::scene::{Primitive, Shape};
 
-/// A surface of a primitive and the pixels that it can fall on.
-#[derive(Debug, Clone)]
-pub(super) struct Piece {
-    /// Index of the primitive in the scene.
-    pub(super) primitive: usize,
-    pub(super) window: Window,
-    pub(super) surface: Surface,
-    /// The middle of the window, from which outline and depth count.
-    pub(super) origin: Origin,
-    pub(super) outline: Outline,
-    pub(super) depth: Depth,
-}
-
-impl Piece {
-    /// The columns in which it is seen, row by row. `see` takes a row and its columns.
-    #[inline]
-    pub(super) fn rows(
-        &self,
-        within: &Window,
-        lens: &Lens,
-        mut see: impl FnMut(usize, (usize, usize)),
-    ) {
-        // Some rows at a time: what is done with a row depends on its columns
-        // in ways that a processor cannot foresee, so they must be there early.
-        const ROWS: usize = 16;
-        let mut intervals = [[0.0; 2]; ROWS];
-        let mut columns = [(0, 0); ROWS];
-        let mut first = within.rows.0;
-        while first < within.rows.1 {
-            let count = ROWS.min(within.rows.1 - first);
-            let y = first as f64 - self.origin.row as f64;
-            self.outline.intervals(y, &mut intervals[..count]);
-            for (columns, interval) in columns.iter_mut().zip(&intervals[..count]) {
-                *columns = meet(lens.columns_from(&self.origin, *interval), within.columns);
-            }
-            for (j, columns) in (first..).zip(&columns[..count]) {
-                if columns.0 < columns.1 {
-                    see(j, *columns);
-                }
-            }
-            first += count;
-        }
-    }
-
-    /// The largest inverse depth it can have in a window.
-    pub(super) fn nearest_in(&self, window: &Window, lens: &Lens) -> f64 {
-        let above = self.surface.nearest();
-        let (left, right) = (window.columns.0, window.columns.1.max(1) - 1);
-        let (top, bottom) = (window.rows.0, window.rows.1.max(1) - 1);
-        [(left, top), (left, bottom), (right, top), (right, bottom)]
-            .map(|(i, j)| above.dot(&Vector3::new(lens.x(i), lens.y(j), 1.0)))
-            .into_iter()
-            .fold(0.0, f64::max)
-    }
-}
-
-/// Takes primitives apart for one camera.
-pub(super) struct Cutter<'a> {
-    pub(super) camera: &'a Pinhole,
-    pub(super) lens: Lens,
-    /// Pieces that cannot fall into this window are left out.
-    pub(super) view: Window,
+/// Collects the surfaces of primitives that one camera may see.
+pub(crate) struct Decomposer<'a> {
+    pub(crate) camera: &'a Pinhole,
+    pub(crate) plane: ImagePlane,
+    /// Surfaces outside of this window are left out.
+    pub(crate) view: Window,
     frustum: Frustum,
-    /// The visible pieces so far.
-    pub(super) pieces: Vec<Piece>,
+    /// The visible surfaces so far.
+    pub(crate) surfaces: Vec<VisibleSurface>,
 }
 
-impl<'a> Cutter<'a> {
-    pub(super) fn new(camera: &'a Pinhole) -> Self {
-        let lens = Lens::new(camera);
-        let view = Window::frame(&lens);
+impl<'a> Decomposer<'a> {
+    pub(crate) fn new(camera: &'a Pinhole) -> Self {
+        let plane = ImagePlane::new(camera);
+        let view = Window::frame(&plane);
         Self {
             camera,
-            lens,
+            plane,
             view,
-            frustum: Frustum::new(&lens, &view),
-            pieces: Vec::new(),
+            frustum: Frustum::new(&plane, &view),
+            surfaces: Vec::new(),
         }
     }
 
-    /// Leaves out what does not fall into a window from now on.
-    pub(super) fn look_at(&mut self, view: Window) {
+    /// From now on, leaves out surfaces outside of this window.
+    pub(crate) fn set_view(&mut self, view: Window) {
         self.view = view;
-        self.frustum = Frustum::new(&self.lens, &view);
+        self.frustum = Frustum::new(&self.plane, &view);
     }
 
-    /// Adds the pieces of one primitive.
-    pub(super) fn cut(&mut self, primitive: usize, shape: &Shape) {
+    /// Adds the surfaces of one primitive.
+    pub(crate) fn add(&mut self, primitive: usize, shape: &Shape) {
         match shape {
             Shape::Sphere { centre, radius } => {
                 let centre = self.camera.camera_from_world(centre);
@@ -139,20 +84,21 @@ impl<'a> Cutter<'a> {
         )
     }
 
-    fn push(&mut self, primitive: usize, window: Window, surface: Surface) {
-        let origin = Origin::middle(&window, &self.lens);
-        let (outline, depth) = surface.forms(&origin);
-        self.pieces.push(Piece {
+    fn push(&mut self, primitive: usize, window: Window, kind: SurfaceKind) {
+        let origin = Origin::middle(&window, &self.plane);
+        let (outline, depth) = kind.forms(&origin);
+        self.surfaces.push(VisibleSurface {
             primitive,
             window,
-            surface,
+            kind,
             origin,
             outline,
             depth,
         });
     }
 
-    pub(super) fn sees(&self, window: &Window) -> bool {
+    /// Whether a part of `window` is in view.
+    pub(crate) fn sees(&self, window: &Window) -> bool {
         !window.overlap(&self.view).is_empty()
     }
 
@@ -167,12 +113,12 @@ impl<'a> Cutter<'a> {
         if self.frustum.misses(&[centre], radius) {
             return;
         }
-        let window = ball_window(&self.lens, &centre, radius);
+        let window = ball_window(&self.plane, &centre, radius);
         if !self.sees(&window) {
             return;
         }
         if let Some(quadric) = Quadric::new(centre, Matrix3::identity(), radius) {
-            self.push(primitive, window, Surface::Ball(quadric, outward));
+            self.push(primitive, window, SurfaceKind::Ball(quadric, outward));
         }
     }
 
@@ -189,7 +135,7 @@ impl<'a> Cutter<'a> {
             start: along.dot(&a),
         };
         if let Some(quadric) = Quadric::new(a, across, radius) {
-            self.push(primitive, window, Surface::Side(quadric, ends));
+            self.push(primitive, window, SurfaceKind::Side(quadric, ends));
         }
     }
 
@@ -212,14 +158,14 @@ impl<'a> Cutter<'a> {
         };
         let [u, v] = perpendicular(&axis).map(|unit| unit * radius);
         let corners = [a, b].map(|end| [end + u + v, end + u - v, end - u + v, end - u - v]);
-        let window = corners_window(&self.lens, corners.as_flattened());
+        let window = corners_window(&self.plane, corners.as_flattened());
         if !self.sees(&window) {
             return;
         }
         self.side(primitive, window, [a, b], radius);
         for (end, outward) in [(a, -axis), (b, axis)] {
-            if let Some(flat) = Flat::new(end, [u, v], outward) {
-                self.push(primitive, window, Surface::Ellipse(flat));
+            if let Some(flat) = FlatSurface::new(end, [u, v], outward) {
+                self.push(primitive, window, SurfaceKind::Ellipse(flat));
             }
         }
     }
@@ -263,45 +209,45 @@ impl<'a> Cutter<'a> {
         if !self.sees(&window) {
             return;
         }
-        if let Some(flat) = Flat::new(centre, half, outward) {
-            self.push(primitive, window, Surface::Rectangle(flat));
+        if let Some(flat) = FlatSurface::new(centre, half, outward) {
+            self.push(primitive, window, SurfaceKind::Rectangle(flat));
         }
     }
 
     /// Window of the parallelogram with the given half axes.
-    pub(super) fn flat_window(&self, centre: &Vector3<f64>, [a, b]: [Vector3<f64>; 2]) -> Window {
+    pub(crate) fn flat_window(&self, centre: &Vector3<f64>, [a, b]: [Vector3<f64>; 2]) -> Window {
         let corners = [a + b, a - b, b - a, -a - b].map(|offset| centre + offset);
-        corners_window(&self.lens, &corners)
+        corners_window(&self.plane, &corners)
     }
 
     fn capsule_window(&self, a: &Vector3<f64>, b: &Vector3<f64>, radius: f64) -> Window {
         if a.z.min(b.z) > radius || a.z.max(b.z) <= -radius {
-            ball_window(&self.lens, a, radius).hull(&ball_window(&self.lens, b, radius))
+            ball_window(&self.plane, a, radius).hull(&ball_window(&self.plane, b, radius))
         } else {
-            Window::frame(&self.lens)
+            Window::frame(&self.plane)
         }
     }
 }
 
-/// Takes every primitive apart that can be seen in a window.
-pub(super) fn cut_scene<'a>(
+/// The surfaces of a scene that may be seen in a window; without one, in the whole image.
+pub(crate) fn decompose<'a>(
     scene: &[Primitive],
     camera: &'a Pinhole,
     view: Option<Window>,
-) -> Cutter<'a> {
-    let mut cutter = Cutter::new(camera);
+) -> Decomposer<'a> {
+    let mut decomposer = Decomposer::new(camera);
     if let Some(view) = view {
-        cutter.look_at(view);
+        decomposer.set_view(view);
     }
-    cutter.pieces.reserve(3 * scene.len());
+    decomposer.surfaces.reserve(3 * scene.len());
     for (index, primitive) in scene.iter().enumerate() {
-        cutter.cut(index, &primitive.shape);
+        decomposer.add(index, &primitive.shape);
     }
-    cutter
+    decomposer
 }
 
 /// Two unit vectors perpendicular to a unit vector and to each other.
-pub(super) fn perpendicular(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
+pub(crate) fn perpendicular(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
     let helper = if axis.x.abs() < 0.6 {
         Vector3::x()
     } else {
@@ -313,12 +259,12 @@ pub(super) fn perpendicular(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
 
 /// Distance of the origin to a segment.
 fn distance_to_segment(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
-    let way = b - a;
-    let square = way.norm_squared();
+    let axis = b - a;
+    let square = axis.norm_squared();
     let share = if square > 0.0 {
-        (-a.dot(&way) / square).clamp(0.0, 1.0)
+        (-a.dot(&axis) / square).clamp(0.0, 1.0)
     } else {
         0.0
     };
-    (a + way * share).norm()
+    (a + axis * share).norm()
 }

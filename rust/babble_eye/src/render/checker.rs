@@ -1,13 +1,13 @@
 //! The checker of the ground: runs of one colour along a row.
 
-use super::ink::Ink;
-use super::light::{Swatch, swatch};
-use super::row::Lens;
-use super::surface::Flat;
+use super::pixel_format::PixelFormat;
+use super::swatch::{Swatch, swatch};
+use crate::raster::image_plane::ImagePlane;
+use crate::raster::surface::FlatSurface;
 
 /// A checkered ground in the camera frame.
 #[derive(Debug, Clone)]
-pub(super) struct Checker {
+pub(crate) struct Checker {
     /// Coordinates in squares: (x · d) / (w · d), (y · d) / (w · d).
     x: nalgebra::Vector3<f64>,
     y: nalgebra::Vector3<f64>,
@@ -22,8 +22,8 @@ const CONTRAST: f32 = 0.955;
 impl Checker {
     /// From the rectangle's flat, its middle and half edges \[m\] and the edge
     /// of a square \[m\].
-    pub(super) fn new(
-        flat: &Flat,
+    pub(crate) fn new(
+        flat: &FlatSurface,
         centre: [f64; 2],
         half: [f64; 2],
         cell: f64,
@@ -43,17 +43,17 @@ impl Checker {
     }
 
     /// Paints the columns [first, end) of a row; `pixels` begins at `first`.
-    pub(super) fn paint<I: Ink>(
+    pub(crate) fn paint<I: PixelFormat>(
         &self,
         pixels: &mut [I],
         first: usize,
         end: usize,
         y: f64,
-        lens: &Lens,
+        plane: &ImagePlane,
     ) {
         let w = along_row(&self.w, y);
         let [mut x, mut y] = [&self.x, &self.y]
-            .map(|form| Crossings::from_column(along_row(form, y), w, first, lens));
+            .map(|form| Crossings::from_column(along_row(form, y), w, first, plane));
         let mut column = first;
         let mut odd = (x.square + y.square) & 1 == 1;
         while column < end {
@@ -62,7 +62,7 @@ impl Checker {
             I::fill(&mut pixels[run], &self.swatches[usize::from(odd)]);
             for axis in [&mut x, &mut y] {
                 if axis.next == next {
-                    axis.advance(lens);
+                    axis.advance(plane);
                     odd = !odd;
                 }
             }
@@ -92,8 +92,8 @@ struct Crossings {
 }
 
 impl Crossings {
-    fn from_column(numerator: [f64; 2], w: [f64; 2], column: usize, lens: &Lens) -> Self {
-        let x = lens.x(column);
+    fn from_column(numerator: [f64; 2], w: [f64; 2], column: usize, plane: &ImagePlane) -> Self {
+        let x = plane.x(column);
         let value = (numerator[0] * x + numerator[1]) / (w[0] * x + w[1]);
         let whole = value as i64;
         let square = whole - i64::from((whole as f64) > value);
@@ -107,26 +107,26 @@ impl Crossings {
             x,
             next: column,
         };
-        crossings.find(lens);
+        crossings.find(plane);
         crossings
     }
 
-    fn advance(&mut self, lens: &Lens) {
+    fn advance(&mut self, plane: &ImagePlane) {
         self.edge += self.step;
-        self.find(lens);
+        self.find(plane);
     }
 
     /// The next edge; the end of the row if there is none ahead, as beyond
     /// the horizon or along an edge.
-    fn find(&mut self, lens: &Lens) {
+    fn find(&mut self, plane: &ImagePlane) {
         let x = (self.edge * self.w[1] - self.numerator[1])
             / (self.numerator[0] - self.edge * self.w[0]);
         if x >= self.x {
             self.x = x;
-            self.next = lens.columns([x, f64::INFINITY]).0;
+            self.next = plane.columns([x, f64::INFINITY]).0;
         } else {
             self.x = f64::INFINITY;
-            self.next = lens.width;
+            self.next = plane.width;
         }
     }
 }

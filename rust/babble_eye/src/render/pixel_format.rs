@@ -1,12 +1,12 @@
-//! What pixels are painted with: colours or their luminance.
+//! Pixel formats of pictures: 8-bit colours, or their luminance.
 
-use super::light::{Swatch, fill};
+use super::swatch::{Swatch, fill};
 
 /// Pixels shaded at a time, as one vector.
-pub(super) const LANES: usize = 4;
+pub(crate) const LANES: usize = 4;
 
-/// A pixel of a picture.
-pub(super) trait Ink: Copy {
+/// What the painter writes into a pixel.
+pub(crate) trait PixelFormat: Copy {
     /// Paints pixels in the colour of a swatch.
     fn fill(pixels: &mut [Self], swatch: &Swatch);
 
@@ -15,7 +15,7 @@ pub(super) trait Ink: Copy {
 }
 
 /// (red, green, blue)
-impl Ink for [u8; 3] {
+impl PixelFormat for [u8; 3] {
     fn fill(pixels: &mut [Self], swatch: &Swatch) {
         fill(pixels.as_flattened_mut(), swatch);
     }
@@ -42,7 +42,7 @@ fn level_bits(x: f32) -> u32 {
 const BT_709: [f32; 3] = [2126.0, 7152.0, 722.0];
 
 /// The luminance of white.
-pub(super) const WHITE: f32 = 255.0 * 1e4;
+pub(crate) const WHITE: f32 = 255.0 * 1e4;
 
 /// Luminance of a colour, 0 to [`WHITE`].
 #[inline]
@@ -52,7 +52,7 @@ fn luminance([red, green, blue]: [f32; 3]) -> f32 {
 }
 
 /// Luminance of the colour that is painted with `[u8; 3]`.
-impl Ink for f32 {
+impl PixelFormat for f32 {
     fn fill(pixels: &mut [Self], swatch: &Swatch) {
         pixels.fill(luminance([swatch[0], swatch[1], swatch[2]].map(f32::from)));
     }

@@ -1,8 +1,8 @@
-//! The onlooker's camera.
+//! The camera of an onlooker, for pictures from outside.
 
 use nalgebra::Vector3;
 
-use super::Pinhole;
+use crate::camera::Pinhole;
 
 /// Field of view of the shorter edge \[deg\].
 const FIELD_DEG: f64 = 42.0;

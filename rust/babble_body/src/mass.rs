@@ -1,13 +1,13 @@
-//! Masses of rigid bodies and of what they are made of.
+//! Mass properties of rigid bodies and of the solids that they are made of.
 
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
 use crate::robot::Solid;
 
-/// Mass of a rigid body.
+/// Mass, centre of mass and rotational inertia of a rigid body.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Inertia {
+pub struct MassProperties {
     /// Mass \[kg\].
     pub mass: f64,
     /// Centre of mass \[m\].
@@ -16,7 +16,7 @@ pub struct Inertia {
     pub inertia: Matrix3<f64>,
 }
 
-impl Inertia {
+impl MassProperties {
     /// A solid of a density \[kg/m³\].
     #[must_use]
     pub fn of(solid: &Solid, density: f64) -> Self {
@@ -58,7 +58,7 @@ impl Inertia {
 }
 
 /// A cylinder and the two halves of a ball.
-fn capsule(a: Vector3<f64>, b: Vector3<f64>, radius: f64, density: f64) -> Inertia {
+fn capsule(a: Vector3<f64>, b: Vector3<f64>, radius: f64, density: f64) -> MassProperties {
     use std::f64::consts::PI;
     let (length, square) = ((b - a).norm(), radius * radius);
     let direction = (b - a) / length;
@@ -72,5 +72,5 @@ fn capsule(a: Vector3<f64>, b: Vector3<f64>, radius: f64, density: f64) -> Inert
         + ball * (square / 5.0 + length * length / 4.0 + 3.0 / 8.0 * length * radius);
     let across = Matrix3::identity() - along;
     let spread = across * round + along * long;
-    Inertia::from_spread(cylinder + ball, (a + b) / 2.0, spread)
+    MassProperties::from_spread(cylinder + ball, (a + b) / 2.0, spread)
 }

@@ -1,7 +1,7 @@
 //! Outlines: where along a row of pixels a surface is seen, in closed form.
 //!
-//! All forms are in columns x and rows y from a piece's
-//! [origin](super::row::Origin).
+//! All forms are in columns x and rows y from a surface's
+//! [origin](super::origin::Origin).
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -11,7 +11,7 @@ const NOWHERE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 /// A convex part of the image with straight edges: where linear forms of d
 /// are all ≥ 0. Edges are kept as x = p + q y, so that a row needs no division.
 #[derive(Debug, Clone)]
-pub(super) struct Edges<const N: usize> {
+pub(crate) struct Edges<const N: usize> {
     /// Lines [p, q] that the part lies to the right of; −∞ where there is none.
     left: [[f64; 2]; N],
     /// Lines that it lies to the left of; +∞ where there is none.
@@ -26,7 +26,7 @@ const ALONG_ROWS: f64 = 1e-12;
 
 impl<const N: usize> Edges<N> {
     /// Where all of the forms are ≥ 0.
-    pub(super) fn new(forms: [Vector3<f64>; N]) -> Self {
+    pub(crate) fn new(forms: [Vector3<f64>; N]) -> Self {
         let mut edges = Self {
             left: [[f64::NEG_INFINITY, 0.0]; N],
             right: [[f64::INFINITY, 0.0]; N],
@@ -65,7 +65,7 @@ impl<const N: usize> Edges<N> {
 
 /// What is seen of a surface.
 #[derive(Debug, Clone)]
-pub(super) enum Outline {
+pub(crate) enum Outline {
     Round(Cone),
     /// A cone cut by an edge.
     Half(Cone, Edges<1>),
@@ -74,7 +74,7 @@ pub(super) enum Outline {
 
 impl Outline {
     /// The intervals of x of row y and of the rows below it.
-    pub(super) fn intervals(&self, y: f64, rows: &mut [[f64; 2]]) {
+    pub(crate) fn intervals(&self, y: f64, rows: &mut [[f64; 2]]) {
         match self {
             Self::Round(cone) => cone.intervals(y, rows),
             Self::Half(cone, edge) => {
@@ -101,7 +101,7 @@ fn fill(y: f64, rows: &mut [[f64; 2]], interval: impl Fn(f64) -> [f64; 2]) {
 /// A cone of rays from the camera: those with D = (l · d)² − dᵀ Q d ≥ 0 and
 /// l · d > 0. Spheres and flat discs are seen within such a cone.
 #[derive(Debug, Clone)]
-pub(super) enum Cone {
+pub(crate) enum Cone {
     Ellipse(Ellipse),
     /// l and the matrix of D, if the image is no ellipse, or hardly.
     Any(Vector3<f64>, Matrix3<f64>),
@@ -113,7 +113,7 @@ const ELLIPSE: f64 = 1e-3;
 
 impl Cone {
     /// From l and the matrix of D.
-    pub(super) fn new(linear: Vector3<f64>, form: Matrix3<f64>) -> Self {
+    pub(crate) fn new(linear: Vector3<f64>, form: Matrix3<f64>) -> Self {
         if form.m11 < -ELLIPSE * linear.x * linear.x {
             Self::Ellipse(Ellipse::new(&linear, &form))
         } else {
@@ -139,7 +139,7 @@ impl Cone {
 
 /// An ellipse, row by row: x = m₀ + m₁ y ± √(s₀ + s₁ y + s₂ y²).
 #[derive(Debug, Clone)]
-pub(super) struct Ellipse {
+pub(crate) struct Ellipse {
     middle: [f64; 2],
     swing: [f64; 3],
     /// l · d in the middle, which is positive before the camera.

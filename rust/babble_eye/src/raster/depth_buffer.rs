@@ -1,32 +1,34 @@
 //! The window rasteriser: surfaces drawn row by row into a depth buffer.
 
-use super::depth::Depth;
-use super::piece::{Cutter, Piece, cut_scene};
-use super::row::{Lens, offset};
+use super::decompose::{Decomposer, decompose};
+use super::image_plane::{ImagePlane, offset};
+use super::inverse_depth::InverseDepth;
+use super::visible_surface::VisibleSurface;
 use super::window::Window;
-use super::{Pinhole, Primitive};
+use crate::camera::Pinhole;
+use crate::scene::Primitive;
 
 /// No surface at a pixel.
-pub(super) const NOTHING: u32 = u32::MAX;
+pub(crate) const NOTHING: u32 = u32::MAX;
 
 /// Pixels drawn at a time. The last ones of a run may be beyond its end and
 /// are left as they are.
 const LANES: usize = 4;
 
-/// What is seen at each pixel of a window, as pieces and inverse depths.
-pub(super) struct Buffer {
-    pub(super) window: Window,
-    /// Index of the piece or [`NOTHING`], row-major; [`LANES`] more at the end.
-    pub(super) piece: Vec<u32>,
+/// What is seen at each pixel of a window, as surfaces and inverse depths.
+pub(crate) struct DepthBuffer {
+    pub(crate) window: Window,
+    /// Index of the surface or [`NOTHING`], row-major; [`LANES`] more at the end.
+    pub(crate) surface: Vec<u32>,
     /// 1 / depth \[1/m\], 0 where there is nothing.
-    pub(super) inverse_depth: Vec<f32>,
+    pub(crate) inverse_depth: Vec<f32>,
 }
 
-impl Buffer {
-    pub(super) fn new(window: Window) -> Self {
+impl DepthBuffer {
+    pub(crate) fn new(window: Window) -> Self {
         let mut buffer = Self {
             window,
-            piece: Vec::new(),
+            surface: Vec::new(),
             inverse_depth: Vec::new(),
         };
         buffer.move_to(window.rows);
@@ -34,25 +36,25 @@ impl Buffer {
     }
 
     /// Empties the buffer and moves it to other rows.
-    pub(super) fn move_to(&mut self, rows: (usize, usize)) {
+    pub(crate) fn move_to(&mut self, rows: (usize, usize)) {
         self.window.rows = rows;
         let pixels = self.window.width() * self.window.height() + LANES;
-        self.piece.clear();
-        self.piece.resize(pixels, NOTHING);
+        self.surface.clear();
+        self.surface.resize(pixels, NOTHING);
         self.inverse_depth.clear();
         self.inverse_depth.resize(pixels, 0.0);
     }
 
-    /// Draws a piece, keeping what is nearer.
-    pub(super) fn draw(&mut self, id: u32, piece: &Piece, lens: &Lens) {
-        let part = piece.window.overlap(&self.window);
+    /// Draws a surface, keeping what is nearer.
+    pub(crate) fn draw(&mut self, id: u32, surface: &VisibleSurface, plane: &ImagePlane) {
+        let part = surface.window.overlap(&self.window);
         if part.is_empty() {
             return;
         }
-        match &piece.depth {
-            Depth::Flat(flat) => self.rows(id, piece, part, lens, |y| flat.row(y)),
-            Depth::Ball(ball) => self.rows(id, piece, part, lens, |y| ball.row(y)),
-            Depth::Side(side) => self.rows(id, piece, part, lens, |y| side.row(y)),
+        match &surface.depth {
+            InverseDepth::Flat(flat) => self.rows(id, surface, part, plane, |y| flat.row(y)),
+            InverseDepth::Ball(ball) => self.rows(id, surface, part, plane, |y| ball.row(y)),
+            InverseDepth::Side(side) => self.rows(id, surface, part, plane, |y| side.row(y)),
         }
     }
 
@@ -61,24 +63,24 @@ impl Buffer {
     fn rows<Row: Fn(f32) -> f32>(
         &mut self,
         id: u32,
-        piece: &Piece,
+        surface: &VisibleSurface,
         part: Window,
-        lens: &Lens,
+        plane: &ImagePlane,
         row: impl Fn(f32) -> Row,
     ) {
-        piece.rows(&part, lens, |j, columns| {
-            let y = offset(j, piece.origin.row);
-            self.keep_nearer(id, j, columns, piece.origin.column, row(y));
+        surface.rows(&part, plane, |j, columns| {
+            let y = offset(j, surface.origin.row);
+            self.keep_nearer(id, j, columns, surface.origin.column, row(y));
         });
     }
 
     /// The pixels of a row, from the first column in `interval` on.
-    pub(super) fn span(&mut self, j: usize, columns: (usize, usize)) -> (&mut [u32], &mut [f32]) {
+    pub(crate) fn span(&mut self, j: usize, columns: (usize, usize)) -> (&mut [u32], &mut [f32]) {
         let row = (j - self.window.rows.0) * self.window.width();
         let first = row + columns.0 - self.window.columns.0;
         let range = first..first + (columns.1 - columns.0);
         (
-            &mut self.piece[range.clone()],
+            &mut self.surface[range.clone()],
             &mut self.inverse_depth[range],
         )
     }
@@ -97,18 +99,18 @@ impl Buffer {
         let count = columns.1 - columns.0;
         let whole = (columns.0, columns.0 + count.next_multiple_of(LANES));
         let mut x = offset(columns.0, origin);
-        let (pieces, depths) = self.span(j, whole);
-        let (pieces, _) = pieces.as_chunks_mut();
+        let (surfaces, depths) = self.span(j, whole);
+        let (surfaces, _) = surfaces.as_chunks_mut();
         let (depths, _) = depths.as_chunks_mut();
-        let mut blocks = pieces.iter_mut().zip(depths);
-        for (pieces, depths) in blocks.by_ref().take(count / LANES) {
-            draw_block(id, pieces, depths, lanes(x).map(&inverse_depth));
+        let mut blocks = surfaces.iter_mut().zip(depths);
+        for (surfaces, depths) in blocks.by_ref().take(count / LANES) {
+            draw_block(id, surfaces, depths, lanes(x).map(&inverse_depth));
             x += LANES as f32;
         }
-        if let Some((pieces, depths)) = blocks.next() {
+        if let Some((surfaces, depths)) = blocks.next() {
             let (w, limit) = (lanes(x).map(&inverse_depth), WITHIN[count % LANES]);
             let w = std::array::from_fn(|k| if limit[k] < w[k] { limit[k] } else { w[k] });
-            draw_block(id, pieces, depths, w);
+            draw_block(id, surfaces, depths, w);
         }
     }
 }
@@ -132,20 +134,20 @@ fn lanes(x: f32) -> [f32; LANES] {
 
 /// Draws a surface of inverse depths w into a block where it is nearer.
 #[inline]
-fn draw_block(id: u32, pieces: &mut [u32; LANES], depths: &mut [f32; LANES], w: [f32; LANES]) {
+fn draw_block(id: u32, surfaces: &mut [u32; LANES], depths: &mut [f32; LANES], w: [f32; LANES]) {
     // All is read before anything is written, and selected, not branched on,
     // so that the lanes are a vector.
-    let (ids, old) = (*pieces, *depths);
+    let (ids, old) = (*surfaces, *depths);
     *depths = std::array::from_fn(|k| if w[k] > old[k] { w[k] } else { old[k] });
-    *pieces = std::array::from_fn(|k| if w[k] > old[k] { id } else { ids[k] });
+    *surfaces = std::array::from_fn(|k| if w[k] > old[k] { id } else { ids[k] });
 }
 
 /// The primitive and the depth seen at every pixel of a camera's image.
 pub struct Raster {
     width: usize,
-    /// Of each piece.
+    /// Of each surface.
     primitives: Vec<usize>,
-    buffer: Buffer,
+    buffer: DepthBuffer,
 }
 
 impl Raster {
@@ -153,8 +155,8 @@ impl Raster {
     /// for the background and for pixels outside of the image.
     #[must_use]
     pub fn primitive(&self, i: usize, j: usize) -> Option<usize> {
-        let piece = *self.buffer.piece.get(self.index(i, j)?)?;
-        self.primitives.get(piece as usize).copied()
+        let surface = *self.buffer.surface.get(self.index(i, j)?)?;
+        self.primitives.get(surface as usize).copied()
     }
 
     /// Depth along the camera's axis \[m\] at column i, row j; infinite for the
@@ -174,14 +176,16 @@ impl Raster {
 /// What a camera sees of a scene.
 #[must_use]
 pub fn rasterise(scene: &[Primitive], camera: &Pinhole) -> Raster {
-    let Cutter { lens, pieces, .. } = cut_scene(scene, camera, None);
-    let mut buffer = Buffer::new(Window::frame(&lens));
-    for (id, piece) in (0..).zip(&pieces) {
-        buffer.draw(id, piece, &lens);
+    let Decomposer {
+        plane, surfaces, ..
+    } = decompose(scene, camera, None);
+    let mut buffer = DepthBuffer::new(Window::frame(&plane));
+    for (id, surface) in (0..).zip(&surfaces) {
+        buffer.draw(id, surface, &plane);
     }
     Raster {
         width: camera.width,
-        primitives: pieces.iter().map(|piece| piece.primitive).collect(),
+        primitives: surfaces.iter().map(|surface| surface.primitive).collect(),
         buffer,
     }
 }

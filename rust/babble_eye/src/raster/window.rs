@@ -1,32 +1,32 @@
-//! Where on the image a surface can fall.
+//! Windows: rectangular parts of the image that a surface can cover.
 
 use nalgebra::Vector3;
 
-use super::row::Lens;
+use super::image_plane::ImagePlane;
 
-/// Pixels a surface can fall on: half-open ranges of columns and rows.
+/// A rectangle of pixels: half-open ranges of columns and rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Window {
-    pub(super) columns: (usize, usize),
-    pub(super) rows: (usize, usize),
+pub(crate) struct Window {
+    pub(crate) columns: (usize, usize),
+    pub(crate) rows: (usize, usize),
 }
 
 impl Window {
-    pub(super) fn frame(lens: &Lens) -> Self {
+    pub(crate) fn frame(plane: &ImagePlane) -> Self {
         Self {
-            columns: (0, lens.width),
-            rows: (0, lens.height),
+            columns: (0, plane.width),
+            rows: (0, plane.height),
         }
     }
 
-    pub(super) fn overlap(&self, other: &Self) -> Self {
+    pub(crate) fn overlap(&self, other: &Self) -> Self {
         Self {
             columns: meet(self.columns, other.columns),
             rows: meet(self.rows, other.rows),
         }
     }
 
-    pub(super) fn hull(&self, other: &Self) -> Self {
+    pub(crate) fn hull(&self, other: &Self) -> Self {
         let join = |a: (usize, usize), b: (usize, usize)| (a.0.min(b.0), a.1.max(b.1));
         Self {
             columns: join(self.columns, other.columns),
@@ -34,37 +34,37 @@ impl Window {
         }
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.columns.0 >= self.columns.1 || self.rows.0 >= self.rows.1
     }
 
-    pub(super) fn width(&self) -> usize {
+    pub(crate) fn width(&self) -> usize {
         self.columns.1.saturating_sub(self.columns.0)
     }
 
-    pub(super) fn height(&self) -> usize {
+    pub(crate) fn height(&self) -> usize {
         self.rows.1.saturating_sub(self.rows.0)
     }
 }
 
-pub(super) fn meet(a: (usize, usize), b: (usize, usize)) -> (usize, usize) {
+pub(crate) fn meet(a: (usize, usize), b: (usize, usize)) -> (usize, usize) {
     (a.0.max(b.0), a.1.min(b.1))
 }
 
 /// The four planes from the camera along the edges of a window.
 #[derive(Debug, Clone)]
-pub(super) struct Frustum {
+pub(crate) struct Frustum {
     /// Unit normals, away from the window.
     outward: [Vector3<f64>; 4],
 }
 
 impl Frustum {
-    pub(super) fn new(lens: &Lens, window: &Window) -> Self {
+    pub(crate) fn new(plane: &ImagePlane, window: &Window) -> Self {
         // Half a pixel beyond the centres of the outermost pixels.
-        let pitch = 1.0 / lens.focal_px;
+        let pitch = 1.0 / plane.focal_px;
         let [left, right] =
-            [window.columns.0, window.columns.1].map(|column| lens.x(column) - 0.5 * pitch);
-        let [top, bottom] = [window.rows.0, window.rows.1].map(|row| lens.y(row) + 0.5 * pitch);
+            [window.columns.0, window.columns.1].map(|column| plane.x(column) - 0.5 * pitch);
+        let [top, bottom] = [window.rows.0, window.rows.1].map(|row| plane.y(row) + 0.5 * pitch);
         Self {
             outward: [
                 Vector3::new(-1.0, 0.0, left).normalize(),
@@ -76,7 +76,7 @@ impl Frustum {
     }
 
     /// Whether all within `radius` of the hull of points is beyond one plane.
-    pub(super) fn misses(&self, points: &[Vector3<f64>], radius: f64) -> bool {
+    pub(crate) fn misses(&self, points: &[Vector3<f64>], radius: f64) -> bool {
         self.outward
             .iter()
             .any(|normal| points.iter().all(|point| normal.dot(point) > radius))
@@ -84,7 +84,7 @@ impl Frustum {
 }
 
 /// Window of a ball: its tangent planes through the camera's right and up axes.
-pub(super) fn ball_window(lens: &Lens, centre: &Vector3<f64>, radius: f64) -> Window {
+pub(crate) fn ball_window(plane: &ImagePlane, centre: &Vector3<f64>, radius: f64) -> Window {
     if centre.z <= -radius {
         return Window {
             columns: (0, 0),
@@ -93,7 +93,7 @@ pub(super) fn ball_window(lens: &Lens, centre: &Vector3<f64>, radius: f64) -> Wi
     }
     let depth = centre.z * centre.z - radius * radius;
     if centre.z <= radius || depth <= 0.0 {
-        return Window::frame(lens);
+        return Window::frame(plane);
     }
     let tangents = |offset: f64| {
         let swing = radius * (offset * offset + depth).sqrt();
@@ -103,13 +103,13 @@ pub(super) fn ball_window(lens: &Lens, centre: &Vector3<f64>, radius: f64) -> Wi
         ]
     };
     Window {
-        columns: lens.columns(tangents(centre.x)),
-        rows: lens.rows(tangents(centre.y)),
+        columns: plane.columns(tangents(centre.x)),
+        rows: plane.rows(tangents(centre.y)),
     }
 }
 
 /// Window of the convex hull of points: all of the frame if some lie behind.
-pub(super) fn corners_window(lens: &Lens, corners: &[Vector3<f64>]) -> Window {
+pub(crate) fn corners_window(plane: &ImagePlane, corners: &[Vector3<f64>]) -> Window {
     let behind = corners.iter().filter(|p| p.z <= 1e-9).count();
     if behind == corners.len() {
         return Window {
@@ -118,7 +118,7 @@ pub(super) fn corners_window(lens: &Lens, corners: &[Vector3<f64>]) -> Window {
         };
     }
     if behind > 0 {
-        return Window::frame(lens);
+        return Window::frame(plane);
     }
     let span = |coordinate: fn(&Vector3<f64>) -> f64| {
         corners
@@ -129,7 +129,7 @@ pub(super) fn corners_window(lens: &Lens, corners: &[Vector3<f64>]) -> Window {
             })
     };
     Window {
-        columns: lens.columns(span(|p| p.x / p.z)),
-        rows: lens.rows(span(|p| p.y / p.z)),
+        columns: plane.columns(span(|p| p.x / p.z)),
+        rows: plane.rows(span(|p| p.y / p.z)),
     }
 }

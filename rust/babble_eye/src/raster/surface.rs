@@ -3,29 +3,29 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::depth::{Depth, Side, Square};
+use super::inverse_depth::{CylinderDepth, InverseDepth, QuadricDepth};
+use super::origin::Origin;
 use super::outline::{Cone, Edges, Outline};
-use super::row::Origin;
 
 /// A ball or the side of a cylinder. Its inverse depth is
 /// w = l · d + √((l · d)² − dᵀ Q d), the nearer of the two intersections.
 #[derive(Debug, Clone)]
-pub(super) struct Quadric {
+pub(crate) struct Quadric {
     /// l
     linear: Vector3<f64>,
     /// Square of the camera's distance, across the axis, to where its lines of
     /// sight touch the surface \[m²\].
     power: f64,
     /// Centre of the ball, or a point on the axis, in the camera frame \[m\].
-    pub(super) centre: Vector3<f64>,
+    pub(crate) centre: Vector3<f64>,
     /// Identity for a ball; projection along the axis for a cylinder.
-    pub(super) across: Matrix3<f64>,
-    pub(super) radius: f64,
+    pub(crate) across: Matrix3<f64>,
+    pub(crate) radius: f64,
 }
 
 impl Quadric {
     /// `None` if the camera is inside.
-    pub(super) fn new(centre: Vector3<f64>, across: Matrix3<f64>, radius: f64) -> Option<Self> {
+    pub(crate) fn new(centre: Vector3<f64>, across: Matrix3<f64>, radius: f64) -> Option<Self> {
         let nearest = across * centre;
         let power = nearest.norm_squared() - radius * radius;
         (power > 0.0).then(|| Self {
@@ -39,7 +39,7 @@ impl Quadric {
 
     /// Linear forms of d below and above its inverse depth: the plane through
     /// its outline, and the plane across the line of sight that touches it.
-    pub(super) fn bounds(&self) -> [Vector3<f64>; 2] {
+    pub(crate) fn bounds(&self) -> [Vector3<f64>; 2] {
         let nearest = self.across * self.centre;
         let distance = nearest.norm();
         let touching = nearest / (distance * (distance - self.radius));
@@ -88,26 +88,26 @@ fn beyond(along: Vector3<f64>, start: f64, [below, above]: [Vector3<f64>; 2]) ->
 
 /// Where a cylinder's side ends: 0 ≤ along · d − start w ≤ w.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Ends {
-    pub(super) along: Vector3<f64>,
-    pub(super) start: f64,
+pub(crate) struct Ends {
+    pub(crate) along: Vector3<f64>,
+    pub(crate) start: f64,
 }
 
 /// A flat surface with inverse depth w · d and two coordinates (u · d) / (w · d)
 /// and (v · d) / (w · d), which are ±1 at its edges.
 #[derive(Debug, Clone)]
-pub(super) struct Flat {
-    pub(super) w: Vector3<f64>,
-    pub(super) u: Vector3<f64>,
-    pub(super) v: Vector3<f64>,
+pub(crate) struct FlatSurface {
+    pub(crate) w: Vector3<f64>,
+    pub(crate) u: Vector3<f64>,
+    pub(crate) v: Vector3<f64>,
     /// Unit normal towards the camera, in the camera frame.
-    pub(super) normal: Vector3<f64>,
+    pub(crate) normal: Vector3<f64>,
 }
 
-impl Flat {
+impl FlatSurface {
     /// The parallelogram or ellipse with the given centre and half axes in the
     /// camera frame; `None` if its front, the side of `outward`, is hidden.
-    pub(super) fn new(
+    pub(crate) fn new(
         centre: Vector3<f64>,
         [a, b]: [Vector3<f64>; 2],
         outward: Vector3<f64>,
@@ -130,18 +130,18 @@ impl Flat {
     }
 
     /// The ellipse u² + v² ≤ w².
-    pub(super) fn ellipse(&self, origin: &Origin) -> Outline {
+    pub(crate) fn ellipse(&self, origin: &Origin) -> Outline {
         let form = self.u * self.u.transpose() + self.v * self.v.transpose();
         let square = self.w * self.w.transpose() - form;
         Outline::Round(Cone::new(origin.linear(&self.w), origin.quadratic(&square)))
     }
 
-    fn depth(&self, origin: &Origin) -> Depth {
-        Depth::flat(&origin.linear(&self.w))
+    fn depth(&self, origin: &Origin) -> InverseDepth {
+        InverseDepth::flat(&origin.linear(&self.w))
     }
 
     /// The parallelogram |u| ≤ w, |v| ≤ w.
-    pub(super) fn parallelogram(&self, origin: &Origin) -> Outline {
+    pub(crate) fn parallelogram(&self, origin: &Origin) -> Outline {
         let Self { w, u, v, .. } = self;
         straight([w - u, w + u, w - v, w + v], origin)
     }
@@ -149,17 +149,17 @@ impl Flat {
 
 /// A surface in the camera frame.
 #[derive(Debug, Clone)]
-pub(super) enum Surface {
+pub(crate) enum SurfaceKind {
     /// A ball, or its half on the side of a unit vector, which ends a capsule.
     Ball(Quadric, Option<Vector3<f64>>),
     Side(Quadric, Ends),
-    Rectangle(Flat),
-    Ellipse(Flat),
+    Rectangle(FlatSurface),
+    Ellipse(FlatSurface),
 }
 
-impl Surface {
+impl SurfaceKind {
     /// Where it is seen and its inverse depth, in columns and rows from an origin.
-    pub(super) fn forms(&self, origin: &Origin) -> (Outline, Depth) {
+    pub(crate) fn forms(&self, origin: &Origin) -> (Outline, InverseDepth) {
         match self {
             Self::Ball(ball, half) => {
                 let (linear, square) = ball.at(origin);
@@ -171,13 +171,16 @@ impl Surface {
                     }
                     None => Outline::Round(cone),
                 };
-                (outline, Depth::Ball(Square::new(&linear, &square)))
+                (
+                    outline,
+                    InverseDepth::Ball(QuadricDepth::new(&linear, &square)),
+                )
             }
             Self::Side(side, ends) => {
                 let (linear, square) = side.at(origin);
-                let square = Square::new(&linear, &square);
+                let square = QuadricDepth::new(&linear, &square);
                 let along = origin.linear(&ends.along);
-                let depth = Depth::Side(Side::new(square, &along, ends.start));
+                let depth = InverseDepth::Side(CylinderDepth::new(square, &along, ends.start));
                 (straight(side.side_edges(ends), origin), depth)
             }
             Self::Rectangle(flat) => (flat.parallelogram(origin), flat.depth(origin)),
@@ -186,7 +189,7 @@ impl Surface {
     }
 
     /// A linear form above its inverse depth.
-    pub(super) fn nearest(&self) -> Vector3<f64> {
+    pub(crate) fn nearest(&self) -> Vector3<f64> {
         match self {
             Self::Rectangle(flat) | Self::Ellipse(flat) => flat.w,
             Self::Ball(quadric, _) | Self::Side(quadric, _) => quadric.bounds()[1],

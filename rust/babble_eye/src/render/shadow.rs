@@ -4,24 +4,26 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::light::TOWARDS_KEY;
-use super::outline::Outline;
-use super::piece::{Cutter, perpendicular};
-use super::raster::Buffer;
-use super::row::{Lens, Origin};
-use super::surface::Flat;
-use super::window::{Window, meet};
-use super::{Pinhole, Primitive, Shape};
+use crate::camera::Pinhole;
+use crate::raster::decompose::{Decomposer, perpendicular};
+use crate::raster::depth_buffer::DepthBuffer;
+use crate::raster::image_plane::ImagePlane;
+use crate::raster::origin::Origin;
+use crate::raster::outline::Outline;
+use crate::raster::surface::FlatSurface;
+use crate::raster::window::{Window, meet};
+use crate::scene::{Primitive, Shape};
 
 /// A patch of shadow on the ground.
-pub(super) struct Shadow {
+pub(crate) struct Shadow {
     window: Window,
     origin: Origin,
     outline: Outline,
 }
 
 impl Shadow {
-    /// Turns the pixels of the piece `lit` inside of the shadow into `dark`.
-    pub(super) fn draw(&self, buffer: &mut Buffer, lit: u32, dark: u32, lens: &Lens) {
+    /// Turns the pixels of the surface `lit` inside of the shadow into `dark`.
+    pub(crate) fn draw(&self, buffer: &mut DepthBuffer, lit: u32, dark: u32, plane: &ImagePlane) {
         let part = self.window.overlap(&buffer.window);
         if part.is_empty() {
             return;
@@ -30,10 +32,10 @@ impl Shadow {
             let y = j as f64 - self.origin.row as f64;
             let mut interval = [[0.0; 2]];
             self.outline.intervals(y, &mut interval);
-            let columns = meet(lens.columns_from(&self.origin, interval[0]), part.columns);
+            let columns = meet(self.origin.columns(plane, interval[0]), part.columns);
             if columns.0 < columns.1 {
-                for piece in buffer.span(j, columns).0 {
-                    *piece = if *piece == lit { dark } else { *piece };
+                for surface in buffer.span(j, columns).0 {
+                    *surface = if *surface == lit { dark } else { *surface };
                 }
             }
         }
@@ -41,16 +43,16 @@ impl Shadow {
 }
 
 /// Shadows of all solids of a scene on a ground at the given height.
-pub(super) fn cast(scene: &[Primitive], height: f64, cutter: &Cutter) -> Vec<Shadow> {
-    let mut caster = Caster::new(height, cutter);
+pub(crate) fn cast(scene: &[Primitive], height: f64, decomposer: &Decomposer) -> Vec<Shadow> {
+    let mut caster = ShadowCaster::new(height, decomposer);
     for primitive in scene {
         caster.cast(&primitive.shape);
     }
     caster.shadows
 }
 
-struct Caster<'a> {
-    cutter: &'a Cutter<'a>,
+struct ShadowCaster<'a> {
+    decomposer: &'a Decomposer<'a>,
     camera: &'a Pinhole,
     height: f64,
     /// Projection along the light into the horizontal, for vectors.
@@ -59,14 +61,14 @@ struct Caster<'a> {
     shadows: Vec<Shadow>,
 }
 
-impl<'a> Caster<'a> {
-    fn new(height: f64, cutter: &'a Cutter<'a>) -> Self {
+impl<'a> ShadowCaster<'a> {
+    fn new(height: f64, decomposer: &'a Decomposer<'a>) -> Self {
         let towards_key = Vector3::from(TOWARDS_KEY).normalize();
         let drift = towards_key / towards_key.z;
         let along_light = Matrix3::identity() - drift * Vector3::z().transpose();
         Self {
-            cutter,
-            camera: cutter.camera,
+            decomposer,
+            camera: decomposer.camera,
             height,
             along_light,
             towards_key,
@@ -106,14 +108,14 @@ impl<'a> Caster<'a> {
         }
     }
 
-    /// Shadow of all that an ellipse sweeps on its way from a to b.
+    /// Shadow of the volume that an ellipse sweeps from a to b.
     fn sweep(&mut self, a: &Vector3<f64>, b: &Vector3<f64>, half: [Vector3<f64>; 2]) {
         self.ellipse(a, half);
         self.ellipse(b, half);
         let [u, v] = half.map(|axis| self.along_light * axis);
-        let way = self.along_light * (b - a);
-        // Half the width across the way: where the ellipse's edge is along it.
-        let (cosine, sine) = (cross_z(&u, &way), cross_z(&v, &way));
+        let sweep = self.along_light * (b - a);
+        // Half the width across the sweep, where the ellipse's edge is parallel to it.
+        let (cosine, sine) = (cross_z(&u, &sweep), cross_z(&v, &sweep));
         let norm = (cosine * cosine + sine * sine).sqrt();
         if norm > 0.0 {
             let across = (u * cosine + v * sine) / norm;
@@ -140,12 +142,12 @@ impl<'a> Caster<'a> {
         let half = half.map(|axis| to_camera * (self.along_light * axis));
         let centre = self.camera.camera_from_world(&foot);
         let up = to_camera.column(2).into_owned();
-        let window = self.cutter.flat_window(&centre, half);
-        if !self.cutter.sees(&window) {
+        let window = self.decomposer.flat_window(&centre, half);
+        if !self.decomposer.sees(&window) {
             return;
         }
-        if let Some(flat) = Flat::new(centre, half, up) {
-            let origin = Origin::middle(&window, &self.cutter.lens);
+        if let Some(flat) = FlatSurface::new(centre, half, up) {
+            let origin = Origin::middle(&window, &self.decomposer.plane);
             let outline = if round {
                 flat.ellipse(&origin)
             } else {

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::config::Body;
 use crate::obstacle::Obstacle;
-use crate::skeleton::{self, Bone, Part};
+use crate::skeleton::{self, Bone, BoneKind};
 use babble_eye::{Gaze, Material, Primitive, Shape};
 
 pub(crate) const SLEEVE: Material = Material::plain([92, 134, 178]);
@@ -19,15 +19,15 @@ const GROUND: Material = Material::plain([196, 196, 188]);
 
 /// Arm and hand in full: sleeves, palm and every digit.
 pub fn push_robot(scene: &mut Vec<Primitive>, body: &Body, q: [f64; 2]) {
-    let (bones, _) = skeleton::bones(body, &skeleton::posture(&body.joints, q));
+    let (bones, _) = skeleton::bones(body, &skeleton::joint_angles(&body.joints, q));
     let digit = 0.4 * body.hand.finger_spacing_m;
     for bone in &bones {
         let width = body.arm.half_width_m;
-        match bone.part {
-            Part::UpperArm => push_capsule(scene, bone, width, SLEEVE),
-            Part::Forearm => push_capsule(scene, bone, width, FOREARM),
-            Part::Digit => push_capsule(scene, bone, digit.min(width), SKIN),
-            Part::Palm => scene.push(palm(bone, width, body.hand.palm_height_m)),
+        match bone.kind {
+            BoneKind::UpperArm => push_capsule(scene, bone, width, SLEEVE),
+            BoneKind::Forearm => push_capsule(scene, bone, width, FOREARM),
+            BoneKind::Digit => push_capsule(scene, bone, digit.min(width), SKIN),
+            BoneKind::Palm => scene.push(palm(bone, width, body.hand.palm_height_m)),
         }
     }
 }

@@ -1,0 +1,158 @@
+//! Draws a scene lit and coloured, some rows at a time.
+
+use super::checker::Checker;
+use super::light::{Light, SHADOW, pigment};
+use super::pixel_format::PixelFormat;
+use super::shading::SmoothShading;
+use super::shadow::{Shadow, cast};
+use super::swatch::{Swatch, swatch};
+use crate::camera::Pinhole;
+use crate::raster::decompose::{Decomposer, decompose};
+use crate::raster::depth_buffer::DepthBuffer;
+use crate::raster::image_plane::ImagePlane;
+use crate::raster::surface::SurfaceKind;
+use crate::raster::visible_surface::VisibleSurface;
+use crate::raster::window::Window;
+use crate::scene::{Primitive, Shape};
+
+/// How a surface is coloured.
+enum Paint {
+    Even(Swatch),
+    SmoothShading(SmoothShading),
+    Checker(Checker),
+}
+
+/// Shadows on a surface of ground: ids of its lit and of its dark paint.
+struct ShadowedGround {
+    lit: u32,
+    dark: u32,
+    shadows: Vec<Shadow>,
+}
+
+/// Draws a picture, or a window of one, band by band.
+pub(crate) struct Painter {
+    light: Light,
+    plane: ImagePlane,
+    surfaces: Vec<VisibleSurface>,
+    /// One of each surface, then one of each shadowed ground.
+    paints: Vec<Paint>,
+    shades: Vec<ShadowedGround>,
+    buffer: DepthBuffer,
+}
+
+impl Painter {
+    /// Prepares a window of the picture, or without one all of it.
+    pub(crate) fn new(scene: &[Primitive], camera: &Pinhole, view: Option<Window>) -> Self {
+        let decomposer = decompose(scene, camera, view);
+        let light = Light::new(&camera.rotation);
+        let mut paints: Vec<Paint> = decomposer
+            .surfaces
+            .iter()
+            .map(|surface| paint(surface, &scene[surface.primitive], &light, 1.0))
+            .collect();
+        let mut shades = Vec::new();
+        for (lit, surface) in (0..).zip(&decomposer.surfaces) {
+            let primitive = &scene[surface.primitive];
+            if let Shape::Ground { height, .. } = primitive.shape {
+                shades.push(ShadowedGround {
+                    lit,
+                    dark: paints.len() as u32,
+                    shadows: cast(scene, height, &decomposer),
+                });
+                paints.push(paint(surface, primitive, &light, SHADOW));
+            }
+        }
+        let Decomposer {
+            plane, surfaces, ..
+        } = decomposer;
+        let window = Window {
+            rows: (0, 0),
+            ..view.unwrap_or(Window::frame(&plane))
+        };
+        Self {
+            light,
+            plane,
+            surfaces,
+            paints,
+            shades,
+            buffer: DepthBuffer::new(window),
+        }
+    }
+
+    /// Paints whole rows from `first` on.
+    pub(crate) fn paint<I: PixelFormat>(&mut self, first: usize, rows: &mut [I]) {
+        let length = self.buffer.window.width();
+        let end = first + rows.len() / length;
+        self.buffer.move_to((first, end));
+        for (id, surface) in (0..).zip(&self.surfaces) {
+            self.buffer.draw(id, surface, &self.plane);
+        }
+        for shade in &self.shades {
+            for shadow in &shade.shadows {
+                shadow.draw(&mut self.buffer, shade.lit, shade.dark, &self.plane);
+            }
+        }
+        for (j, row) in (first..).zip(rows.chunks_exact_mut(length)) {
+            self.paint_row(j, row);
+        }
+    }
+
+    fn paint_row<I: PixelFormat>(&mut self, j: usize, row: &mut [I]) {
+        let columns = self.buffer.window.columns;
+        let y = self.plane.y(j);
+        let (surfaces, depths) = self.buffer.span(j, columns);
+        let mut first = 0;
+        while first < row.len() {
+            let next = first + run_length(&surfaces[first..]);
+            let pixels = &mut row[first..next];
+            let column = columns.0 + first;
+            match self.paints.get(surfaces[first] as usize) {
+                None => I::fill(pixels, &self.light.sky(y)),
+                Some(Paint::Even(swatch)) => I::fill(pixels, swatch),
+                Some(Paint::Checker(checker)) => {
+                    checker.paint(pixels, column, columns.0 + next, y, &self.plane);
+                }
+                Some(Paint::SmoothShading(shaded)) => {
+                    shaded.paint(pixels, &depths[first..next], (column, j));
+                }
+            }
+            first = next;
+        }
+    }
+}
+
+fn paint(surface: &VisibleSurface, primitive: &Primitive, light: &Light, brightness: f32) -> Paint {
+    let colour = pigment(primitive.material);
+    match (&surface.kind, &primitive.shape) {
+        (SurfaceKind::Ball(quadric, _) | SurfaceKind::Side(quadric, _), _) => Paint::SmoothShading(
+            SmoothShading::new(quadric, primitive.material, light, surface.origin),
+        ),
+        (
+            SurfaceKind::Rectangle(flat),
+            Shape::Ground {
+                centre,
+                half_extents,
+                cell,
+                ..
+            },
+        ) => {
+            let brightness = brightness * light.on_flat(&flat.normal);
+            let checker = Checker::new(flat, *centre, *half_extents, *cell, colour, brightness);
+            Paint::Checker(checker)
+        }
+        (SurfaceKind::Rectangle(flat) | SurfaceKind::Ellipse(flat), _) => {
+            Paint::Even(swatch(colour, light.on_flat(&flat.normal)))
+        }
+    }
+}
+
+/// How many pixels from the first on show the same surface.
+fn run_length(surfaces: &[u32]) -> usize {
+    let id = surfaces[0];
+    let same = |block: &&[u32]| block.iter().fold(0, |all, surface| all | (surface ^ id)) == 0;
+    let whole = 4 * surfaces.chunks_exact(4).take_while(same).count();
+    let rest = surfaces[whole..]
+        .iter()
+        .take_while(|surface| **surface == id);
+    whole + rest.count()
+}

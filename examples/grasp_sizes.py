@@ -10,7 +10,7 @@ import os
 import numpy as np
 
 from gym_babble.envs import BabbleGraspEnv
-from gym_babble.paper.table2 import hold_rates
+from gym_babble.paper.holding import hold_rates
 
 parser = argparse.ArgumentParser(description=__doc__)
 parser.add_argument("--trials", type=int, default=100, help="trials of holding, of each size")

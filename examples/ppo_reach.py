@@ -7,7 +7,8 @@ python examples/ppo_reach.py --preset delta_posture   # step by step: about a mi
 import argparse
 
 from gym_babble import evaluate, scenarios
-from gym_babble.study.ppo import PRESETS, train_ppo
+from gym_babble.study.ppo import train_ppo
+from gym_babble.study.presets import PRESETS
 from gym_babble.study.tasks import REACH, task_of
 
 presets = [name for name, preset in PRESETS.items() if task_of(preset.env_id) == REACH]

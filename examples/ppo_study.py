@@ -27,7 +27,8 @@ import matplotlib as mpl
 
 from gym_babble import evaluate, scenarios
 from gym_babble.study.evaluation import wilson
-from gym_babble.study.ppo import PRESETS, train_ppo
+from gym_babble.study.ppo import train_ppo
+from gym_babble.study.presets import PRESETS
 from gym_babble.study.tasks import TASKS, Task, task_of
 
 mpl.use("agg")

@@ -10,10 +10,12 @@ from rich.console import Console
 from gym_babble import evaluate, scenarios
 from gym_babble.config import Config
 from gym_babble.errors import ConfigError
-from gym_babble.study import contenders
-from gym_babble.study.compare import CONTENDERS, STUDIES, Played, Settings, compare
-from gym_babble.study.ppo import PRESETS
-from gym_babble.study.tables import OUTCOMES
+from gym_babble.study import contenders, learning
+from gym_babble.study.compare import STUDIES, compare
+from gym_babble.study.comparison import TrainedResult
+from gym_babble.study.contenders import CONTENDERS, Settings
+from gym_babble.study.presets import PRESETS
+from gym_babble.study.rates import OUTCOMES
 from gym_babble.study.tasks import GRASP
 
 SMALL = Settings(cases=50, movements=500, ppo_steps=1)
@@ -28,7 +30,8 @@ def comparison():
 @contextmanager
 def few_validations():
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(contenders, "VALIDATION_CASES", 4)
+        for module in (contenders, learning):
+            patch.setattr(module, "VALIDATION_CASES", 4)
         yield
 
 
@@ -72,16 +75,16 @@ def test_hebb_agents_count_what_they_babbled(comparison):
     assert steps == 224  # 8 s and four time constants of .8 s, in steps of 50 ms.
     for key in ("hebb-paper", "hebb-conjunctive"):
         one = comparison.result(key).trained[0]
-        assert one.legal_movements == 500
-        assert one.control_steps == one.movements * steps
-        assert 0.1 < comparison.result(key).legal_rate < 0.3
+        assert one.accepted == 500
+        assert one.control_steps == one.trials * steps
+        assert 0.1 < comparison.result(key).accepted_rate < 0.3
         assert [point.control_steps for point in one.curve][-1] == one.control_steps
         assert len(one.curve) == 2
 
 
 def test_ppo_counts_whole_movements_alike(comparison):
     pattern = comparison.result("ppo-pattern").trained[0]
-    assert pattern.control_steps == 224 * pattern.movements
+    assert pattern.control_steps == 224 * pattern.trials
     posture = comparison.result("ppo-posture").trained[0]
     assert posture.curve[-1].control_steps == posture.control_steps
 
@@ -115,7 +118,7 @@ def test_grasping_leaves_out_who_must_be_asked_for(grasping):
 def test_agents_of_grasping_are_tested_on_the_same_cases(grasping):
     cases = scenarios("palm_side", 8)
     for result in grasping.results:
-        if isinstance(result, Played) and result.contender.key != "random":
+        if isinstance(result, TrainedResult) and result.contender.key != "random":
             assert evaluate(result.trained[0].agent, "BabbleGrasp-v0", cases) == result.tests[0]
     # Who knows the geometry grasps, who acts at random does not: the rows are not exchanged.
     assert grasping.result("scripted").rates["success"]["count"] == 8
@@ -125,9 +128,9 @@ def test_agents_of_grasping_are_tested_on_the_same_cases(grasping):
 def test_hebb_grasping_counts_what_it_babbled(grasping):
     result = grasping.result("hebb-paper")
     (one,) = result.trained
-    assert one.legal_movements == 60 <= one.movements
-    assert one.control_steps == 80 * one.movements  # 4 s in steps of 50 ms.
-    assert result.legal_rate == 60 / one.movements
+    assert one.accepted == 60 <= one.trials
+    assert one.control_steps == 80 * one.trials  # 4 s in steps of 50 ms.
+    assert result.accepted_rate == 60 / one.trials
     assert one.curve[-1].control_steps == one.control_steps
     assert len(one.curve) == 2
 
@@ -168,7 +171,7 @@ def test_the_stored_row_is_the_studys(grasping):
     assert [len(one.curve) for one in result.trained] == [
         len(run["curve"]) for run in study["runs"]
     ]
-    assert not isinstance(result, Played)
+    assert not isinstance(result, TrainedResult)
 
 
 def test_the_study_is_a_whole_one_of_todays_preset():
@@ -200,12 +203,14 @@ def test_seeds_are_pooled():
 def test_without_stable_baselines3_the_others_run(monkeypatch):
     monkeypatch.setitem(sys.modules, "stable_baselines3", None)
     for name in list(sys.modules):
-        if name in ("gym_babble.study.ppo", "gym_babble.sb3") or name.startswith(
-            "stable_baselines3."
-        ):
+        if name in (
+            "gym_babble.study.ppo",
+            "gym_babble.study.presets",
+            "gym_babble.sb3",
+        ) or name.startswith("stable_baselines3."):
             monkeypatch.delitem(sys.modules, name)
     said = []
-    found = compare(["ppo-pattern", "scripted"], SMALL, say=said.append)
+    found = compare(["ppo-pattern", "scripted"], SMALL, log=said.append)
     assert [result.contender.key for result in found.results] == ["scripted"]
     assert "gym-babble[sb3]" in found.skipped["ppo-pattern"]
     assert any("gym-babble[sb3]" in line for line in said)

@@ -7,10 +7,14 @@ from scipy import stats
 
 from gym_babble import HebbBabbling, Scripted, scenarios
 from gym_babble.errors import ConfigError
-from gym_babble.paper.reproduce import starts_without_case, switched, ways, weight_sets
-from gym_babble.study.compare import Settings, compare
-from gym_babble.study.tables import share, t_interval
-from gym_babble.viz import figures
+from gym_babble.paper import fig2, fig4, fig5
+from gym_babble.paper.fig4 import starts_without_case, switched, trajectories
+from gym_babble.paper.fig5 import weight_sets
+from gym_babble.study.compare import compare
+from gym_babble.study.contenders import Settings
+from gym_babble.study.rates import share, t_interval
+from gym_babble.viz import style
+from gym_babble.viz.curves import learning_curves
 from gym_babble.viz.film import GAP, contact_sheet
 
 
@@ -21,7 +25,7 @@ def hebb():
 
 @pytest.fixture(scope="module")
 def found(hebb):
-    return ways(hebb, scenarios("fig4"))
+    return trajectories(hebb, scenarios("fig4"))
 
 
 def lines_of(axes, style):
@@ -30,7 +34,7 @@ def lines_of(axes, style):
 
 
 def test_fig2_has_a_curve_for_each_b1_from_hand_to_target():
-    left, right = figures.fig2((0.3, 0.5, 0.7)).axes
+    left, right = fig2.draw((0.3, 0.5, 0.7)).axes
     for line in left.lines:
         points = line.get_xydata()
         assert points[0] == pytest.approx([0, 0], abs=1e-6)
@@ -47,9 +51,9 @@ def test_fig2_has_a_curve_for_each_b1_from_hand_to_target():
     assert np.cross([*end, 0], [*middle, 0])[2] > 0
 
 
-def test_fig4_draws_each_way_once_bold_where_it_reaches(found):
-    left, right = figures.fig4(found, found[:3]).axes
-    reaching = [way for way in found if way.outcome == "success"]
+def test_fig4_draws_each_trajectory_once_bold_where_it_reaches(found):
+    left, right = fig4.draw(found, found[:3]).axes
+    reaching = [one for one in found if one.outcome == "success"]
     assert 0 < len(reaching) < len(found)
     assert len(lines_of(left, "-")) == len(reaching)
     assert len(lines_of(left, ":")) == len(found) - len(reaching)
@@ -57,19 +61,19 @@ def test_fig4_draws_each_way_once_bold_where_it_reaches(found):
     assert lines_of(left, "-")[0].get_lw() > 1.5
 
 
-def test_ways_lead_from_start_to_target(found):
-    for way in found:
-        assert way.fingertip[0] == pytest.approx(way.case["start"], abs=1e-6)
-        if way.outcome == "success":
-            assert np.linalg.norm(way.fingertip[-1] - way.case["target"]) < 0.02
+def test_trajectories_lead_from_start_to_target(found):
+    for one in found:
+        assert one.fingertip[0] == pytest.approx(one.case["start"], abs=1e-6)
+        if one.outcome == "success":
+            assert np.linalg.norm(one.fingertip[-1] - one.case["target"]) < 0.02
 
 
-def test_ways_curve_as_b1_says():
-    way = ways(Scripted(), scenarios("fig4", 1))[0]
-    start, target = np.array(way.case["start"]), np.array(way.case["target"])
-    middle = way.fingertip[len(way.fingertip) // 3]
+def test_trajectories_curve_as_b1_says():
+    one = trajectories(Scripted(), scenarios("fig4", 1))[0]
+    start, target = np.array(one.case["start"]), np.array(one.case["target"])
+    middle = one.fingertip[len(one.fingertip) // 3]
     turn = np.cross([*(target - start), 0], [*(middle - start), 0])[2]
-    assert (turn > 0) == (way.b1 > 0.5)
+    assert (turn > 0) == (one.b1 > 0.5)
 
 
 def test_switched_exchanges_start_and_obstacle():
@@ -101,7 +105,7 @@ def test_fig5_sets_are_mirrored(hebb):
 
 
 def test_fig5_has_four_patterns_and_the_map(hebb):
-    figure = figures.fig5(weight_sets(hebb))
+    figure = fig5.draw(weight_sets(hebb))
     pictures = [axes.images[0].get_array() for axes in figure.axes if axes.images]
     assert [picture.shape for picture in pictures[:5]] == [(21, 21)] * 5
 
@@ -115,22 +119,22 @@ def test_fig5_needs_the_papers_map_and_some_learning():
 
 def test_learning_curves_have_a_line_for_each_learner():
     comparison = compare(["hebb-paper", "scripted"], Settings(seeds=2, cases=10, movements=500))
-    figure = figures.learning_curves(comparison)
+    figure = learning_curves(comparison)
     for axes in figure.axes:
         assert len([line for line in axes.lines if line.get_marker() == "."]) == 2
         assert len([line for line in axes.lines if line.get_ls() == ":"]) == 1  # The paper's.
     stored = compare(["ppo-stored"], Settings(task="grasp", cases=1))
-    for axes in figures.learning_curves(stored).axes:
+    for axes in learning_curves(stored).axes:
         drawn = [line.get_ls() for line in axes.lines]
         assert drawn == ["-"] * len(stored.results[0].trained)
 
 
 def test_the_same_figure_is_the_same_svg():
-    assert figures.svg(figures.fig2((0.3,))) == figures.svg(figures.fig2((0.3,)))
+    assert style.svg(fig2.draw((0.3,))) == style.svg(fig2.draw((0.3,)))
 
 
 def test_saved_figures_are_pictures_with_ink(tmp_path, hebb):
-    figures.save(figures.fig5(weight_sets(hebb)), tmp_path / "fig5.png")
+    style.save(fig5.draw(weight_sets(hebb)), tmp_path / "fig5.png")
     picture = imread(tmp_path / "fig5.png")
     assert picture.shape[0] > 300
     assert picture[..., :3].std() > 0.05

@@ -10,7 +10,8 @@ from stable_baselines3.common.callbacks import BaseCallback
 
 from gym_babble import evaluate, scenarios
 from gym_babble.errors import ConfigError
-from gym_babble.study.ppo import PRESETS, train_ppo
+from gym_babble.study.ppo import train_ppo
+from gym_babble.study.presets import PRESETS
 
 
 def test_learns_whole_movements():

@@ -9,9 +9,9 @@ import pytest
 from rich.console import Console
 
 from gym_babble import HebbGrasping, scenarios
+from gym_babble.paper import fig7, fig8, holding, sight
 from gym_babble.paper import table2 as grasping
-from gym_babble.study.tables import table2_tables
-from gym_babble.viz import figures
+from gym_babble.paper.tables import table2_tables
 
 
 @pytest.fixture(scope="module")
@@ -51,7 +51,7 @@ def test_the_small_object_closes_the_hand_further(table):
 
 
 def test_the_reflex_holds(table):
-    assert [rate["diameter"] for rate in table.hold] == list(grasping.HOLD_DIAMETERS_M)
+    assert [rate["diameter"] for rate in table.hold] == list(holding.HOLD_DIAMETERS_M)
     for rate in table.hold:
         assert rate["held"] == rate["trials"] == 3
         assert rate["penetration_mm"] < 3.0
@@ -59,7 +59,7 @@ def test_the_reflex_holds(table):
 
 @pytest.mark.slow
 def test_the_reflex_holds_in_90_of_100(capsys):
-    rates = grasping.hold_rates(100)
+    rates = holding.hold_rates(100)
     with capsys.disabled():
         print([(rate["diameter"], rate["held"]) for rate in rates])
     assert all(rate["held"] >= 90 for rate in rates)
@@ -74,34 +74,34 @@ def test_tables_show_both_sizes_beside_the_paper(table):
         assert known in text
 
 
-def test_ways_end_at_touched_objects():
+def test_trajectories_end_at_touched_objects():
     agent = HebbGrasping(seed=1).learn(60)
     cases = [case for case in scenarios("fig7") if case["diameter"] == 0.06][::20]
-    ways = grasping.grasp_ways(agent, cases)
-    assert [way.case for way in ways] == cases
-    for way in ways:
-        near = np.linalg.norm(way.palm - np.array(way.case["object"]), axis=1).min()
-        if way.held:
-            assert way.reach
+    palms = fig7.trajectories(agent, cases)
+    assert [one.case for one in palms] == cases
+    for one in palms:
+        near = np.linalg.norm(one.palm - np.array(one.case["object"]), axis=1).min()
+        if one.held:
+            assert one.reach
             assert near < 0.03 + 0.06
-    figure = figures.fig7(ways)
+    figure = fig7.draw(palms)
     (axes,) = figure.axes
-    assert len(axes.patches) == len({way.case["object"] for way in ways})
-    assert f"{sum(way.held for way in ways)} grasped" in axes.get_title(loc="left")
+    assert len(axes.patches) == len({one.case["object"] for one in palms})
+    assert f"{sum(one.held for one in palms)} grasped" in axes.get_title(loc="left")
 
 
 def test_fig8_shows_the_agents_own_weights():
     agent = HebbGrasping(seed=1).learn(60)
-    figure = figures.fig8(agent, eye=(0.5, 0.8))
+    figure = fig8.draw(agent, eye=(0.5, 0.8))
     outward = next(ax for ax in figure.axes if "eye neuron" in ax.get_title(loc="left"))
     shown = outward.images[0].get_array()
     expected = agent.weights["reach.weights"][:, 16 * 21 + 10].reshape(21, 21)
     np.testing.assert_array_equal(shown, expected)
 
 
-def test_sights_are_of_both_sizes():
-    seen = grasping.sights(size=63)
+def test_eye_views_are_of_both_sizes():
+    seen = sight.eye_views(size=63)
     assert [name for name, _ in seen] == ["2.4 cm", "6 cm"]
     red = [np.sum(image[1][..., 0] > 2 * image[1][..., 1].astype(int)) for _, image in seen]
     assert red[1] > 4 * red[0] > 0
-    assert len(figures.sight(seen).axes) == 6
+    assert len(sight.draw(seen).axes) == 6

@@ -284,7 +284,8 @@ INTERRUPTED = """
 import signal, time
 import numpy as np
 from gym_babble import HebbBabbling, HebbGrasping, Oracle, evaluate, scenarios
-from gym_babble.study.compare import Settings, compare
+from gym_babble.study.compare import compare
+from gym_babble.study.contenders import Settings
 from gym_babble.envs import BabbleGraspVectorEnv, BabbleReachVectorEnv
 
 # A shell's background jobs are born deaf to it.

@@ -11,12 +11,11 @@ import numpy as np
 
 from gym_babble import _core
 from gym_babble.agents.base import EnvLike, choices_of, flat_senses, merge, processors
-from gym_babble.envs.choices import check_whole
+from gym_babble.envs.choices import check_seed, check_whole
 from gym_babble.envs.grasp import BabbleGraspEnv, GraspChoices
 from gym_babble.envs.spaces import Spec
 from gym_babble.errors import AgentFileError, ConfigError
 from gym_babble.progress import track
-from gym_babble.study.scenarios import check_seed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

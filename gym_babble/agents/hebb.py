@@ -12,9 +12,9 @@ from gym_babble import _core
 from gym_babble.agents.base import merge, processors
 from gym_babble.agents.movements import MovementAgent
 from gym_babble.envs import BabbleReachEnv
+from gym_babble.envs.choices import check_seed
 from gym_babble.errors import AgentFileError, ConfigError
 from gym_babble.progress import track
-from gym_babble.study.scenarios import check_seed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -1,50 +1,62 @@
-"""What is installed, whether the core computes what it should, and how fast it is."""
-
-from __future__ import annotations
+"""`gym-babble doctor`: what is installed, whether the core computes correctly, and how fast."""
 
 import os
 import platform
 from hashlib import blake2b
-from importlib.metadata import PackageNotFoundError, version
 from time import perf_counter
 from typing import Any
 
 import gymnasium
 import numpy as np
+import typer
+from rich.table import Table
 
-from gym_babble._core import __version__, debug_build
+from gym_babble._core import debug_build
+from gym_babble.cli.arguments import AsJson
+from gym_babble.cli.output import print_json, print_results
 from gym_babble.envs import BabbleGraspEnv, BabbleReachEnv
+from gym_babble.study.tables import plain_table
+from gym_babble.study.versions import EXTRAS, versions
 
-__all__ = ["EXTRAS", "STATE_HASH", "examine", "state_hash", "versions"]
-
-EXTRAS = {
-    "sb3": ("stable-baselines3", "torch"),
-    "figures": ("matplotlib", "pillow"),
-    "human": ("pygame-ce",),
-    "video": ("moviepy",),
-}
-"""The extras, and the packages that each brings."""
+__all__ = ["STATE_HASH", "doctor", "examine", "state_hash"]
 
 STATE_HASH = 0x78FF_8A0A_4D1D_3A62
-"""`state_hash()` on every platform."""
+"""The value of `state_hash()` on every platform."""
 
 
-def versions() -> dict[str, str | None]:
-    """Versions of what this package runs on, and of the extras; None where one is missing."""
-    packages = ("gymnasium", "numpy", *(name for extra in EXTRAS.values() for name in extra))
-    found = {"gym-babble": __version__, "python": platform.python_version()}
-    return {**found, **{name: _version(name) for name in packages}}
+def doctor(as_json: AsJson = False) -> None:
+    """Check what is installed, that the core computes correctly, and how fast it is."""
+    found = examine()
+    if as_json:
+        print_json(found)
+    else:
+        print_results(_table(found))
+    if not found["same_bits"]:
+        raise typer.Exit(1)
 
 
-def _version(package: str) -> str | None:
-    try:
-        return version(package)
-    except PackageNotFoundError:
-        return None
+def examine() -> dict[str, Any]:
+    """All findings, as JSON types."""
+    found = versions()
+    state = state_hash()
+    return {
+        "versions": found,
+        "extras": {
+            extra: all(found[name] is not None for name in names) for extra, names in EXTRAS.items()
+        },
+        "build": "debug" if debug_build else "release",
+        "platform": f"{platform.system()} {platform.machine()}",
+        "threads": os.cpu_count() or 1,
+        "state_hash": f"{state:016x}",
+        "state_hash_expected": f"{STATE_HASH:016x}",
+        "same_bits": state == STATE_HASH,
+        "step_us": _time_single(),
+        "step_in_batch_of_64_us": _time_batch(),
+    }
 
 
 def state_hash() -> int:
-    """Hash of both tasks' states after 20 steps from seed 0; it must not depend on the machine."""
+    """Hash of both tasks' states after 20 steps of seed 0; the same on every machine."""
     digest = blake2b(digest_size=8)
     for env in (BabbleReachEnv(), BabbleGraspEnv(control="posture")):
         env.reset(seed=0)
@@ -56,28 +68,8 @@ def state_hash() -> int:
     return int.from_bytes(digest.digest(), "little")
 
 
-def examine() -> dict[str, Any]:
-    """All of it, in JSON's types."""
-    found = versions()
-    known = state_hash()
-    return {
-        "versions": found,
-        "extras": {
-            extra: all(found[name] is not None for name in names) for extra, names in EXTRAS.items()
-        },
-        "build": "debug" if debug_build else "release",
-        "platform": f"{platform.system()} {platform.machine()}",
-        "threads": os.cpu_count() or 1,
-        "state_hash": f"{known:016x}",
-        "state_hash_expected": f"{STATE_HASH:016x}",
-        "same_bits": known == STATE_HASH,
-        "step_us": _time_single(),
-        "step_in_batch_of_64_us": _time_batch(),
-    }
-
-
 def _time_single(steps: int = 4_000) -> float:
-    """Clock time of a step through `gymnasium.make`, resets included [µs]."""
+    """Clock time of a step with `gymnasium.make`, resets included [µs]."""
     env = gymnasium.make("BabbleReach-v0")
     env.action_space.seed(0)
     actions = [env.action_space.sample() for _ in range(16)]
@@ -91,7 +83,7 @@ def _time_single(steps: int = 4_000) -> float:
 
 
 def _time_batch(steps: int = 400, num_envs: int = 64) -> float:
-    """Clock time of a step of one of 64 environments through `gymnasium.make_vec` [µs]."""
+    """Clock time of a step for each environment of a batch of `gymnasium.make_vec` [µs]."""
     envs = gymnasium.make_vec("BabbleReach-v0", num_envs=num_envs)
     envs.action_space.seed(0)
     actions = [envs.action_space.sample() for _ in range(16)]
@@ -102,3 +94,26 @@ def _time_batch(steps: int = 400, num_envs: int = 64) -> float:
     seconds = perf_counter() - began
     envs.close()
     return 1e6 * seconds / (steps * num_envs)
+
+
+def _table(found: dict[str, Any]) -> Table:
+    """The findings of `examine` as a table."""
+    table = plain_table(None, ["what", "found"], left=2)
+    for name, version in found["versions"].items():
+        table.add_row(name, version or "[dim]not installed[/]")
+    for extra, installed in found["extras"].items():
+        table.add_row(
+            f"extra {extra}", "yes" if installed else f"no: pip install 'gym-babble\\[{extra}]'"
+        )
+    for name in ("platform", "build", "threads"):
+        table.add_row(name, str(found[name]))
+    state = found["state_hash"]
+    verdict = f"{state}: correct"
+    if not found["same_bits"]:
+        verdict = (
+            f"[red]{state}, expected {found['state_hash_expected']}: run `make setup` to rebuild[/]"
+        )
+    table.add_row("state after 20 steps of seed 0", verdict)
+    table.add_row("a step with gymnasium.make", f"{found['step_us']:.1f} µs")
+    table.add_row("a step in a batch of 64", f"{found['step_in_batch_of_64_us']:.1f} µs")
+    return table

@@ -171,3 +171,9 @@ def numbers(name: str, value: Any, n: int, unit: str = "m") -> list[float] | Non
     if len(found) != n:
         raise ScenarioError(f"{name} = {value!r} has {len(found)} numbers, expected {n} [{unit}]")
     return found
+
+
+def check_seed(seed: int) -> None:
+    """Raises `ConfigError` for a seed outside the core's range."""
+    if not 0 <= seed < 2**64:
+        raise ConfigError(f"seed = {seed} is not in [0, 2^64)")

@@ -1,21 +1,19 @@
-"""The data behind the paper's Table II and Figures 7 and 8: reaching and grasping."""
+"""Table II: learned postures of the hand, and how reaching and grasping end."""
 
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import gymnasium
 import numpy as np
 
-from gym_babble import _core
 from gym_babble.agents import HebbGrasping
 from gym_babble.config import Config, config_json
-from gym_babble.envs import BabbleGraspEnv
 from gym_babble.envs.choices import check_whole
 from gym_babble.errors import ConfigError
-from gym_babble.progress import track
+from gym_babble.paper.holding import hold_rates
 from gym_babble.study.evaluation import Evaluation, evaluate, wilson
 from gym_babble.study.scenarios import scenarios
 
@@ -26,23 +24,20 @@ if TYPE_CHECKING:
 
     from gym_babble.agents.base import Agent
     from gym_babble.config import ConfigLike
-    from gym_babble.study.scenarios import GraspScenario
+    from gym_babble.study.scenarios import GraspProtocol, GraspScenario
 
 __all__ = [
     "FACTS",
-    "HOLD_DIAMETERS_M",
     "PAPER_TABLE_II",
-    "GraspWay",
+    "SizeResult",
     "TableTwo",
-    "grasp_ways",
-    "hold_rates",
     "recalled_hands",
-    "sights",
     "table2",
+    "table_diameters",
 ]
 
 FACTS = ("reach", "palm_reach", "held")
-"""Readings of success: any part of arm or hand touches the object, the palm does, it is held."""
+"""Facts at the end of a test: arm or hand touched the object, the palm did, the hand held it."""
 
 PAPER_TABLE_II: dict[str, dict[str, Any]] = {
     "small": {
@@ -60,35 +55,37 @@ PAPER_TABLE_II: dict[str, dict[str, Any]] = {
         "held": 0.111,
     },
 }
-"""Table II of the paper: learned equilibrium points [deg] with the ideal ones, and rates."""
+"""Table II of the paper: learned and ideal equilibrium points [deg], and rates."""
 
-HOLD_DIAMETERS_M = (0.024, 0.03, 0.04, 0.05, 0.06)
-PROTOCOLS = ("table2", "palm_side", "full")
+PROTOCOLS: tuple[GraspProtocol, ...] = ("table2", "palm_side", "full")
+
 TEST_STEPS = 240
+"""Time limit of a test [control steps]."""
 
 
 @dataclass(frozen=True)
-class Sized:
-    """What came out for one diameter, over all seeds."""
+class SizeResult:
+    """Results for one diameter, over all seeds."""
 
     diameter: float
+    """Diameter [m]."""
     hands: NDArray[np.float64]
-    """Equilibrium points of thumb and finger that the tests' sights recalled (n, 2) [deg]."""
+    """Equilibrium points of thumb and finger recalled in the tests (n, 2) [deg]."""
     babbled: NDArray[np.float64]
-    """Those of the babbled hands (n, 2) [deg]."""
+    """Equilibrium points of the babbled hands (n, 2) [deg]."""
     tests: dict[str, dict[int, Evaluation]]
-    """Of each protocol, the evaluation of each seed that drew cases of this size."""
+    """Evaluations by protocol and seed; seeds without cases of this size are missing."""
 
     def to_json(self) -> dict[str, Any]:
-        """Everything in JSON's types."""
+        """The results as JSON types."""
         return {
             "diameter": self.diameter,
             "hand": {
                 name: {
                     "mean": float(self.hands[:, i].mean()),
                     "spread": float(self.hands[:, i].std()),
-                    "babbled_mean": _of(np.mean, self.babbled[:, i]),
-                    "babbled_spread": _of(np.std, self.babbled[:, i]),
+                    "babbled_mean": _statistic(np.mean, self.babbled[:, i]),
+                    "babbled_spread": _statistic(np.std, self.babbled[:, i]),
                 }
                 for i, name in enumerate(("thumb", "finger"))
             },
@@ -98,24 +95,26 @@ class Sized:
                     "by_seed": [{"seed": seed, **_tally(test)} for seed, test in tests.items()],
                 }
                 for protocol, tests in self.tests.items()
-                if tests  # Of few random cases none may have this size.
+                if tests  # A few random cases may include none of this size.
             },
         }
 
 
 @dataclass(frozen=True)
 class TableTwo:
-    """Table II over several seeds; seed s has babbling and random cases of its own."""
+    """Table II over several seeds; each seed has its own babbling and random cases."""
 
     settings: dict[str, Any]
-    sizes: tuple[Sized, ...]
+    """The arguments of `table2`."""
+    sizes: tuple[SizeResult, ...]
+    """Results for each diameter."""
     hold: tuple[dict[str, Any], ...]
-    """How well the reflex holds, of each diameter."""
+    """How many objects the reflex holds, from `hold_rates`."""
     kept_rate: float
     """Share of babbles in which the hand kept the object."""
 
     def to_json(self) -> dict[str, Any]:
-        """Rates with Wilson intervals and learned equilibrium points, beside the paper's."""
+        """Rates with Wilson intervals and learned equilibrium points, with the paper's."""
         return {
             **self.settings,
             "kept_rate": self.kept_rate,
@@ -125,7 +124,7 @@ class TableTwo:
         }
 
     def to_csv(self) -> str:
-        """One line of rates for each diameter, protocol and seed, with a head."""
+        """A header, and a line of rates for each diameter, protocol and seed."""
         lines: list[list[Any]] = [["diameter_m", "protocol", "seed", "tests", *FACTS]]
         for size in self.sizes:
             for protocol, tests in size.tests.items():
@@ -135,13 +134,15 @@ class TableTwo:
         return "".join(",".join(map(str, line)) + "\n" for line in lines)
 
 
-def _of(measure: Callable[[NDArray[np.float64]], Any], values: NDArray[np.float64]) -> float | None:
-    """A measure of values; None of none, as JSON has no NaN."""
+def _statistic(
+    measure: Callable[[NDArray[np.float64]], Any], values: NDArray[np.float64]
+) -> float | None:
+    """A statistic of the values; None without values, because JSON has no NaN."""
     return float(measure(values)) if len(values) else None
 
 
 def _tally(result: Evaluation) -> dict[str, Any]:
-    """Number of tests, and of each reading of success count, rate and 95 % Wilson interval."""
+    """Number of tests; for each fact its count, rate and 95 % Wilson interval."""
     n = len(result.outcomes)
     counted = {}
     for name in FACTS:
@@ -160,64 +161,81 @@ def table2(
     hold_trials: int = 100,
     progress_bar: bool = False,
 ) -> TableTwo:
-    """Babbles, learns and is tested, once for each seed; and lets the reflex hold.
+    """Trains and tests an agent for each seed, and tests the reflex.
 
     Args:
-        seeds: Seeds 0, 1, ... of babbling and of the random cases.
-        cases: Random cases in each region, of each seed; half of each size on average.
+        seeds: Number of seeds: 0, 1, ... of babbling and of the random cases.
+        cases: Random cases in each region, for each seed; half of each size on average.
         config: Body and task.
         babbles: Babbles to learn from.
-        hold_trials: Trials of the reflex with each diameter; 0 for none.
+        hold_trials: Trials of the reflex for each diameter; 0 skips them.
         progress_bar: Show bars with the time left.
 
     Raises:
-        ConfigError: An argument is not one there is, or the body has no list of diameters.
+        ConfigError: A number out of bounds, or a config without a list of diameters.
     """
     check_whole("seeds", seeds, 1, 10_000, "seeds")
     check_whole("cases", cases, 1, 1_000_000, "cases")
     check_whole("babbles", babbles, 1, 10_000_000, "babbles")
-    diameters = _diameters(config)
-    hands: dict[float, list[Any]] = {d: [] for d in diameters}
-    babbled: dict[float, list[Any]] = {d: [] for d in diameters}
-    tests: dict[float, dict[str, dict[int, Evaluation]]] = {
-        d: {protocol: {} for protocol in PROTOCOLS} for d in diameters
-    }
+    sizes = {d: _Collected() for d in table_diameters(config)}
     kept, made = 0, 0
     for seed in range(seeds):
         agent = HebbGrasping(gymnasium.make("BabbleGrasp-v0", config=config), seed=seed)
         agent.learn(babbles, progress_bar=progress_bar)
         kept, made = kept + agent.kept, made + agent.babbles
-        left = agent.babbled
-        for d in diameters:
-            babbled[d].append(left["hand"][left["diameter"] == d])
+        for diameter, collected in sizes.items():
+            collected.add_babbles(agent, diameter)
         for protocol in PROTOCOLS:
-            drawn = scenarios(
-                protocol, None if protocol == "table2" else cases, seed, config=config
-            )
-            for d in diameters:
-                chosen = [case for case in drawn if case["diameter"] == d]
-                if not chosen:
-                    continue
-                tests[d][protocol][seed] = _play(agent, chosen, config, progress_bar=progress_bar)
+            n = None if protocol == "table2" else cases
+            drawn = scenarios(protocol, n, seed, config=config)
+            for diameter, collected in sizes.items():
+                chosen = [case for case in drawn if case["diameter"] == diameter]
+                if chosen:
+                    test = _play(agent, chosen, config, progress_bar=progress_bar)
+                    collected.tests[protocol][seed] = test
                 if protocol == "table2":
-                    hands[d].append(recalled_hands(agent, chosen, config))
-    sizes = [
-        Sized(
-            diameter=d,
-            hands=np.concatenate(hands[d]),
-            babbled=np.concatenate(babbled[d]),
-            tests=tests[d],
-        )
-        for d in diameters
-    ]
+                    collected.hands.append(recalled_hands(agent, chosen, config))
     hold = hold_rates(hold_trials, config, progress_bar=progress_bar) if hold_trials else []
     settings = {"config": str(config), "seeds": seeds, "cases": cases, "babbles": babbles}
-    return TableTwo(settings, tuple(sizes), tuple(hold), kept / made if made else float("nan"))
+    return TableTwo(
+        settings,
+        tuple(collected.result(diameter) for diameter, collected in sizes.items()),
+        tuple(hold),
+        kept / made,
+    )
 
 
-def _diameters(config: ConfigLike) -> list[float]:
+@dataclass
+class _Collected:
+    """The results of some seeds for one diameter."""
+
+    hands: list[NDArray[np.float64]] = field(default_factory=list)
+    babbled: list[NDArray[np.float64]] = field(default_factory=list)
+    tests: dict[str, dict[int, Evaluation]] = field(
+        default_factory=lambda: {protocol: {} for protocol in PROTOCOLS}
+    )
+
+    def add_babbles(self, agent: HebbGrasping, diameter: float) -> None:
+        babbled = agent.babbled
+        self.babbled.append(babbled["hand"][babbled["diameter"] == diameter])
+
+    def result(self, diameter: float) -> SizeResult:
+        return SizeResult(
+            diameter=diameter,
+            hands=np.concatenate(self.hands),
+            babbled=np.concatenate(self.babbled),
+            tests=self.tests,
+        )
+
+
+def table_diameters(config: ConfigLike) -> list[float]:
+    """The diameters of Table II's tests [m].
+
+    Raises:
+        ConfigError: The config has a range of diameters instead of a list.
+    """
     if Config.from_json(config_json(config)).grasp.any_diameter_between:
-        raise ConfigError("grasp.any_diameter_between = true: Table II has a list of diameters")
+        raise ConfigError("grasp.any_diameter_between = true: Table II needs a list of diameters")
     return sorted({case["diameter"] for case in scenarios("table2", config=config)})
 
 
@@ -238,95 +256,8 @@ def _play(
 def recalled_hands(
     agent: HebbGrasping, cases: Sequence[GraspScenario], config: ConfigLike = "paper"
 ) -> NDArray[np.float64]:
-    """Equilibrium points of thumb and finger that the sight of each case recalls (n, 2) [deg]."""
+    """Equilibrium points of thumb and finger that each case recalls (n, 2) [deg]."""
     envs = gymnasium.make_vec("BabbleGrasp-v0", num_envs=len(cases), config=config)
     senses, _ = envs.reset(seed=0, options={"scenario": list(cases)})
     envs.close()
     return agent.decide(senses["eye"], senses["fovea"])[:, 2:]
-
-
-def hold_rates(
-    trials: int = 100,
-    config: ConfigLike = "paper",
-    diameters: Sequence[float] = HOLD_DIAMETERS_M,
-    *,
-    progress_bar: bool = False,
-) -> list[dict[str, Any]]:
-    """How many objects the reflex holds through 10 s of arm motion without support.
-
-    The reflex closes on an object at the palm for 3 s, the support goes, and the arm moves to a
-    random posture every half second.
-
-    Raises:
-        ConfigError: There are no trials, or a field of the body is not one there is.
-    """
-    check_whole("trials", trials, 1, 1_000_000, "trials")
-    task = _core.GraspTask(config_json(config))
-    rates = []
-    total = trials * len(diameters)
-    parts = track([trials] * len(diameters), "holding", total=total, show=progress_bar)
-    for diameter, _ in zip(diameters, parts, strict=True):
-        held, penetration, flexion = task.hold(diameter, trials, os.cpu_count() or 1)
-        low, high = wilson(held, trials)
-        rates.append(
-            {
-                "diameter": diameter,
-                "trials": trials,
-                "held": held,
-                "rate": held / trials,
-                "low": low,
-                "high": high,
-                "penetration_mm": 1000 * penetration,
-                "flexion_deg": np.degrees(flexion).tolist(),
-            }
-        )
-    return rates
-
-
-class GraspWay(NamedTuple):
-    """One test of Fig. 7."""
-
-    case: GraspScenario
-    palm: NDArray[np.float64]
-    """Way of the palm's centre (k, 2) [m]."""
-    reach: bool
-    """Whether any part of arm or hand touched the object."""
-    held: bool
-    """Whether the hand held it."""
-
-
-def grasp_ways(
-    agent: Agent,
-    cases: Sequence[GraspScenario],
-    config: ConfigLike = "paper",
-    *,
-    progress_bar: bool = False,
-) -> list[GraspWay]:
-    """The ways of the palm in tests of an agent."""
-    env = BabbleGraspEnv("rgb_array", config=config, max_episode_steps=TEST_STEPS)
-    made = []
-    parts = track([1] * len(cases), "testing", total=len(cases), show=progress_bar)
-    for case, _ in zip(cases, parts, strict=True):
-        observation, info = env.reset(seed=0, options={"scenario": case})
-        state, ended = None, False
-        while not ended:
-            action, state = agent.predict(observation, state, None, True)  # noqa: FBT003
-            observation, _, terminated, truncated, info = env.step(action)
-            ended = terminated or truncated
-        made.append(GraspWay(case, env.trajectory, info["reach"], info["held"]))
-    return made
-
-
-def sights(
-    config: ConfigLike = "paper", size: int = 315
-) -> list[tuple[str, list[NDArray[np.uint8]]]]:
-    """What the eye sees of each diameter: name, and eye's view, fovea and edges (size, size, 3)."""
-    seen = []
-    for diameter in _diameters(config):
-        images = []
-        for camera in ("eye", "fovea", "edges"):
-            env = BabbleGraspEnv("rgb_array", config=config, camera=camera, width=size, height=size)
-            env.reset(seed=3, options={"diameter": diameter})
-            images.append(env.render())
-        seen.append((f"{100 * diameter:g} cm", images))
-    return seen

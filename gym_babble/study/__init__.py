@@ -1,1 +1,1 @@
-"""Test cases, evaluation, and the comparison of agents."""
+"""Test cases, evaluation, and comparison of agents."""

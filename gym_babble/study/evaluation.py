@@ -1,4 +1,4 @@
-"""Success, collision and joint-limit rates of an agent, with intervals."""
+"""Outcomes of an agent's tests, as rates with intervals."""
 
 from __future__ import annotations
 
@@ -25,35 +25,36 @@ if TYPE_CHECKING:
 __all__ = ["Evaluation", "evaluate", "wilson"]
 
 ENVS = 250
+"""Environments of a batch."""
 
 
 @dataclass(frozen=True)
 class Evaluation:
-    """How the episodes of an evaluation ended."""
+    """The results of an evaluation, case by case."""
 
     outcomes: tuple[str, ...]
-    """Outcome of each case, in their order."""
+    """Outcome of each case."""
     steps: tuple[int, ...]
-    """Control steps of each case; in `pattern` control 1."""
+    """Control steps of each case; 1 in `pattern` control."""
     returns: tuple[float, ...]
     """Sum of rewards of each case."""
     facts: dict[str, tuple[bool, ...]] = field(default_factory=dict)
-    """What was true at the end of each case, by the names that the infos have too."""
+    """Facts at the end of each case, with the names in `info`."""
 
     def count(self, outcome: str) -> int:
-        """How many cases ended so."""
+        """Number of cases with this outcome."""
         return Counter(self.outcomes)[outcome]
 
     def rate(self, outcome: str) -> float:
-        """Share of the cases that ended so."""
+        """Share of cases with this outcome."""
         return self.count(outcome) / len(self.outcomes)
 
     def interval(self, outcome: str) -> tuple[float, float]:
-        """95 % Wilson interval of the share."""
+        """95 % Wilson interval of the rate."""
         return wilson(self.count(outcome), len(self.outcomes))
 
     def __add__(self, other: Evaluation) -> Evaluation:
-        """Both together, as of one larger evaluation in the same environment."""
+        """The cases of both, as one evaluation."""
         names = {**self.facts, **other.facts}
         return Evaluation(
             self.outcomes + other.outcomes,
@@ -64,13 +65,13 @@ class Evaluation:
 
 
 def wilson(count: int, n: int, z: float = 1.959964) -> tuple[float, float]:
-    """Wilson score interval of a share, 95 % by default (Wilson 1927)."""
+    """Wilson score interval of a rate, 95 % by default (Wilson 1927)."""
     if n == 0:
         return 0.0, 1.0
     p = count / n
     middle = (p + z * z / (2 * n)) / (1 + z * z / n)
     half = z / (1 + z * z / n) * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
-    # The share lies within, also where rounding would have it beside an end at 0 or 1.
+    # Rounding must not put the rate outside its interval, which could happen at 0 or 1.
     return max(0.0, min(p, middle - half)), min(1.0, max(p, middle + half))
 
 
@@ -87,23 +88,23 @@ def evaluate(
     """Plays one episode of each case.
 
     Args:
-        agent: Anything with stable-baselines3's `predict`.
-        env_id: Environment to play in.
-        cases: From `scenarios`; if not given 1,000 of Table I, or of the region "palm_side" in
-            grasping, of seed 0 and split "test".
+        agent: Any object with stable-baselines3's `predict`.
+        env_id: Id of the environment.
+        cases: Cases from `scenarios`. By default 1,000 test cases of seed 0: of Table I for
+            reaching, of the region "palm_side" for grasping.
         config: Body and task.
         deterministic: Passed to `predict`.
-        progress_bar: Show a bar with the time left.
+        progress_bar: Show a progress bar.
         env_kwargs: Further arguments of the environment.
 
     Raises:
-        ConfigError: There are no cases, or an argument is not one there is.
-        ScenarioError: A case cannot be played on this body.
+        ConfigError: No cases, or an unknown or invalid argument.
+        ScenarioError: A case that cannot be played with this config.
     """
     if cases is None:
         cases = scenarios(task_of(env_id).protocol, 1000, config=config)
     if not cases:
-        raise ConfigError("cases is empty, expected at least one")
+        raise ConfigError("cases is empty: it must have at least one")
     groups = [cases[i : i + ENVS] for i in range(0, len(cases), ENVS)]
     result = Evaluation((), (), ())
     sizes = (len(group) for group in groups)
@@ -117,7 +118,7 @@ def evaluate(
 def _play(
     agent: Agent, envs: Any, cases: Sequence[Scenario | GraspScenario], *, deterministic: bool
 ) -> Evaluation:
-    """One episode in each environment; those that have ended go on unseen."""
+    """Plays one episode in each environment. Ended environments continue, but are ignored."""
     n = len(cases)
     observation, _ = envs.reset(seed=0, options={"scenario": list(cases)})
     state: Any = None
@@ -135,10 +136,10 @@ def _play(
         returns[running] += rewards[running]
         ending = running & ended
         outcomes[ending] = infos["outcome"][ending]
-        for name, held in facts.items():
-            held[ending] = infos[name][ending]
+        for name, values in facts.items():
+            values[ending] = infos[name][ending]
         running &= ~ended
-        # Ended environments begin anew at their next step; what they do from now on is unseen.
+        # Ended environments restart at their next step; their later steps are ignored.
         starts = ended
     return Evaluation(
         tuple(outcomes),

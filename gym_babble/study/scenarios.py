@@ -1,17 +1,26 @@
-"""The paper's tests by name: the same cases for every agent."""
+"""The paper's tests by name, with the same cases for every agent."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict, overload
 
 from gym_babble import _core
 from gym_babble.config import ConfigLike, config_json
+from gym_babble.envs.choices import check_seed
 from gym_babble.errors import ConfigError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["PROTOCOLS", "SPLITS", "GraspScenario", "Scenario", "scenarios"]
+__all__ = [
+    "PROTOCOLS",
+    "SPLITS",
+    "GraspProtocol",
+    "GraspScenario",
+    "ReachProtocol",
+    "Scenario",
+    "scenarios",
+]
 
 PROTOCOLS = {
     "table1": "reach",
@@ -21,20 +30,29 @@ PROTOCOLS = {
     "palm_side": "grasp",
     "full": "grasp",
 }
-"""The protocols, and the task that each tests."""
+"""The protocols, with the task of each."""
+
 SPLITS = ("learning", "validation", "test")
+"""Disjoint sets of cases."""
+
+
+ReachProtocol: TypeAlias = Literal["table1", "fig4"]
+"""Protocols of reaching."""
+
+GraspProtocol: TypeAlias = Literal["table2", "fig7", "palm_side", "full"]
+"""Protocols of grasping."""
 
 
 class Scenario(TypedDict):
-    """One case: positions in the plane of motion [m]."""
+    """One case of reaching. Positions are in the plane of motion [m]."""
 
     protocol: str
     index: int
-    """Place in the protocol: in "fig4", 36 k + j is start j around target k."""
+    """Index in the protocol; in "fig4", 36 k + j is start j around target k."""
     start: tuple[float, float]
     target: tuple[float, float]
     obstacle: tuple[float, float, float] | None
-    """(x, y, radius), or None."""
+    """(x, y, radius), or None without an obstacle."""
 
 
 class GraspScenario(TypedDict, total=False):
@@ -42,7 +60,7 @@ class GraspScenario(TypedDict, total=False):
 
     protocol: str
     index: int
-    """Place in the protocol: in "table2", 144 k + 12 i + j is start j and position i of the k-th
+    """Index in the protocol; in "table2", 144 k + 12 i + j is start j and position i of the k-th
     diameter."""
     start: tuple[float, float]
     """Shoulder and elbow [rad]."""
@@ -51,9 +69,45 @@ class GraspScenario(TypedDict, total=False):
     diameter: float
     """Diameter of the object [m]."""
     goal: tuple[float, float]
-    """With `obs="goal"`: where the object is to be carried [m]."""
+    """Where to carry the object, with `obs="goal"` [m]."""
     obstacle: tuple[float, float, float] | None
-    """(x, y, radius) [m], or None."""
+    """(x, y, radius) [m], or None without an obstacle."""
+
+
+@overload
+def scenarios(
+    protocol: ReachProtocol,
+    n: int | None = None,
+    seed: int = 0,
+    *,
+    split: str = "test",
+    config: ConfigLike = "paper",
+    threads: int = 1,
+) -> list[Scenario]: ...
+
+
+@overload
+def scenarios(
+    protocol: GraspProtocol,
+    n: int | None = None,
+    seed: int = 0,
+    *,
+    split: str = "test",
+    config: ConfigLike = "paper",
+    threads: int = 1,
+) -> list[GraspScenario]: ...
+
+
+@overload
+def scenarios(
+    protocol: str,
+    n: int | None = None,
+    seed: int = 0,
+    *,
+    split: str = "test",
+    config: ConfigLike = "paper",
+    threads: int = 1,
+) -> list[Scenario] | list[GraspScenario]: ...
 
 
 def scenarios(
@@ -64,27 +118,27 @@ def scenarios(
     split: str = "test",
     config: ConfigLike = "paper",
     threads: int = 1,
-) -> list[Any]:
+) -> Any:
     """The cases of a protocol, for `reset(options={"scenario": case})`.
 
     Args:
-        protocol: "table1": `n` legal movements (1,000 if not given), drawn by the full simulation
-            as the paper drew its tests; "fig4": 36 starts around each of 4 targets, where there
-            is a case; "table2": 12 positions of the object times 12 starts for each diameter, where
-            the arm does not begin in the object; "fig7": 12 times 11; "palm_side" and "full": `n`
-            random cases of a region (1,000 if not given).
-        n: How many; the first ones of a protocol that has a fixed list.
-        seed: Seed of the draw.
-        split: "test", or "validation" for choosing settings: disjoint for every seed.
+        protocol: "table1": `n` legal movements (default 1,000), sampled with the full simulation,
+            as the paper's tests; "fig4": 36 starts around each of 4 targets, without impossible
+            ones; "table2": 12 positions of the object times 12 starts for each diameter, without
+            those in which the arm starts inside the object; "fig7": the same with 12 times 11;
+            "palm_side" and "full": `n` random cases of a region (default 1,000).
+        n: Number of cases. A protocol with a fixed list returns its first `n`.
+        seed: Seed of the random protocols.
+        split: "test", or "validation" for choosing settings; they share no case, for any seed.
         config: Body and task, as for the environments.
-        threads: Threads that draw; the cases do not depend on them.
+        threads: Threads to use; the cases do not depend on it.
 
     Returns:
-        `Scenario`s of reaching or `GraspScenario`s.
+        The cases, as `Scenario` for reaching and `GraspScenario` for grasping.
 
     Raises:
-        ConfigError: A name, number or config is not one there is.
-        ScenarioError: The config leaves no room for a case.
+        ConfigError: An unknown name, a number out of bounds, or an invalid config.
+        ScenarioError: The config has no room for a case.
     """
     if protocol not in PROTOCOLS:
         raise ConfigError(f"protocol = {protocol!r} is not one of {', '.join(PROTOCOLS)}")
@@ -109,9 +163,3 @@ def scenarios(
         if case is not None
     ]
     return numbered[:n]
-
-
-def check_seed(seed: int) -> None:
-    """Raises `ConfigError` unless the core can take the seed."""
-    if not 0 <= seed < 2**64:
-        raise ConfigError(f"seed = {seed} is not in [0, 2^64)")

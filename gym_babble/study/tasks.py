@@ -1,4 +1,4 @@
-"""The two tasks: how each is tested, and which rates its tables show."""
+"""Both tasks: their tests, and the rates that tables show."""
 
 from __future__ import annotations
 
@@ -12,25 +12,26 @@ __all__ = ["GRASP", "REACH", "TASKS", "Task", "task_of"]
 
 @dataclass(frozen=True, kw_only=True)
 class Task:
-    """What a comparison or an evaluation needs to know of a task."""
+    """What comparison and evaluation need to know about a task."""
 
     name: str
     """Name for `--task`."""
     title: str
+    """Title of tables and reports."""
     protocol: str
-    """Its tests, from `scenarios`."""
+    """Protocol of its tests, for `scenarios`."""
     cases: str
-    """What tables call them."""
+    """What tables call its tests."""
     outcomes: tuple[str, ...]
-    """How an episode can end; each has exactly one."""
+    """Possible outcomes; an episode has exactly one."""
     facts: tuple[str, ...] = ()
-    """What else may be true at the end of an episode."""
-    made: str
-    """What babbling makes ..."""
-    good: str
-    """... and what those that are learnt from are called."""
+    """Further facts at the end of an episode, each true or false."""
+    trials: str
+    """What babbling's trials are called."""
+    accepted: str
+    """What trials that an agent learns from are called."""
     paper: dict[str, int] | None = None
-    """The paper's counts of outcomes on such cases."""
+    """The paper's counts of outcomes on such tests."""
 
 
 REACH = Task(
@@ -39,9 +40,9 @@ REACH = Task(
     protocol="table1",
     cases="cases of Table I",
     outcomes=("success", "collision", "joint_limit", "timeout"),
-    made="movements",
-    good="legal",
-    # Table I: counts of 1,000 tests. Of its babbled movements about .20 were legal.
+    trials="movements",
+    accepted="legal",
+    # Table I: counts of 1,000 tests. About .20 of the babbled movements were legal.
     paper={"success": 670, "collision": 228, "joint_limit": 102, "timeout": 0},
 )
 
@@ -50,11 +51,11 @@ GRASP = Task(
     title="Grasping",
     protocol="palm_side",
     cases="objects on the palm's side",
-    # Without an obstacle nothing collides.
+    # These tests have no obstacle, so nothing collides.
     outcomes=("success", "lost", "timeout"),
     facts=("reach", "palm_reach"),
-    made="babbles",
-    good="kept",
+    trials="babbles",
+    accepted="kept",
 )
 
 TASKS = {task.name: task for task in (REACH, GRASP)}
@@ -65,10 +66,10 @@ def task_of(env_id: str) -> Task:
     """The task of a registered environment.
 
     Raises:
-        ConfigError: There is no such environment.
+        ConfigError: An unknown environment.
     """
     for row in ENVIRONMENTS:
         if row.id == env_id:
             return TASKS[row.task]
     known = ", ".join(row.id for row in ENVIRONMENTS)
-    raise ConfigError(f"{env_id!r} is not an environment; there are {known}")
+    raise ConfigError(f"{env_id!r} is not an environment; known: {known}")

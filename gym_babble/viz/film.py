@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Film", "contact_sheet", "png", "record", "save_film"]
 
-# White between the pictures of a contact sheet [pixel].
 GAP = 6
+"""Width of the white gaps in a contact sheet [pixel]."""
 
 
 @dataclass(frozen=True)
@@ -29,9 +29,9 @@ class Film:
     """The frames of one episode."""
 
     frames: list[NDArray[np.uint8]]
-    """Pictures (height, width, 3), one a control step."""
+    """Pictures (height, width, 3), one for each control step."""
     fps: int
-    """Frames a second in real time."""
+    """Frames per second, in real time."""
     outcome: str
     """How the episode ended."""
 
@@ -44,7 +44,15 @@ def record(
     camera: str = "third_person",
     size: int = 480,
 ) -> Film:
-    """Plays one episode and takes a picture at each control step."""
+    """Plays one episode and takes a picture at each control step.
+
+    Args:
+        loaded: The agent and its environment.
+        seed: Seed of the episode.
+        options: Options of `reset`, for a case of your own.
+        camera: Camera of the environment.
+        size: Width and height of the pictures [pixel].
+    """
     env: Any = gymnasium.make(
         loaded.env_id,
         render_mode="rgb_array_list",
@@ -70,7 +78,7 @@ def record(
 def contact_sheet(
     frames: list[NDArray[np.uint8]], *, columns: int = 3, rows: int = 2
 ) -> NDArray[np.uint8]:
-    """Frames spread evenly over an episode, from its first to its last, as one picture."""
+    """One picture of frames at equal intervals, from the first to the last."""
     chosen = np.linspace(0, len(frames) - 1, columns * rows).round().astype(int)
     height, width, _ = frames[0].shape
     down, right = height + GAP, width + GAP
@@ -82,7 +90,16 @@ def contact_sheet(
 
 
 def save_film(film: Film, folder: Path, kind: str) -> list[Path]:
-    """Writes a contact sheet, and the film as "png" frames, "gif" or "mp4"; returns the files."""
+    """Writes a contact sheet and the film, and returns the files.
+
+    Args:
+        film: The film.
+        folder: Folder for the files; created if missing.
+        kind: "png" (one file for each frame), "gif" or "mp4".
+
+    Raises:
+        MissingExtraError: Pillow (extra `figures`) or moviepy (extra `video`) is not installed.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     sheet = folder / "sheet.png"
     sheet.write_bytes(png(contact_sheet(film.frames)))
@@ -100,7 +117,7 @@ def png(picture: NDArray[np.uint8]) -> bytes:
     """A picture (height, width, 3) as a PNG file.
 
     Raises:
-        MissingExtraError: Pillow is not there; matplotlib brings it.
+        MissingExtraError: Pillow (extra `figures`) is not installed.
     """
     buffer = BytesIO()
     _pillow().fromarray(picture).save(buffer, "PNG", optimize=True)

@@ -1,0 +1,71 @@
+"""Arguments that several commands share."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from gym_babble.study.contenders import CONTENDERS
+from gym_babble.study.tasks import TASKS
+
+__all__ = [
+    "AgentName",
+    "Agents",
+    "AsJson",
+    "Babbles",
+    "Cases",
+    "ConfigName",
+    "EnvId",
+    "Movements",
+    "OwnConfig",
+    "Picture",
+    "QuasiStatic",
+    "Seed",
+    "Seeds",
+    "TaskName",
+    "Variant",
+]
+
+AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document to stdout.")]
+TaskName = Annotated[Literal["reach", "grasp"], typer.Option(help="Task.")]
+ConfigName = Annotated[str, typer.Option(help="paper, icub, or a TOML or JSON file.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed.")]
+Seeds = Annotated[int, typer.Option(min=1, help="Number of seeds: 0, 1, ...")]
+Cases = Annotated[int, typer.Option(min=1, help="Tests for each seed.")]
+Movements = Annotated[int, typer.Option(min=1, help="Legal movements to learn from (reaching).")]
+Babbles = Annotated[int, typer.Option(min=1, help="Babbles to learn from (grasping).")]
+Variant = Annotated[
+    Literal["paper", "conjunctive"], typer.Option(help="Variant of the agent (reaching).")
+]
+QuasiStatic = Annotated[
+    bool, typer.Option("--quasi-static", help="Babble without the muscles' lag: faster (reaching).")
+]
+EnvId = Annotated[
+    str | None,
+    typer.Option(
+        help="Environment of the test. Default: BabbleReachPattern-v0, or BabbleGrasp-v0 for an "
+        "agent that babbled grasping."
+    ),
+]
+OwnConfig = Annotated[
+    str | None,
+    typer.Option(help="paper, icub, or a file. Default: the config that the agent learnt with."),
+]
+ALL_AGENTS = "; ".join(
+    f"{task}: " + ",".join(f"[{one.key}]" if one.opt_in else one.key for one in CONTENDERS[task])
+    for task in TASKS
+)
+Agents = Annotated[
+    str | None,
+    typer.Option(
+        help=f"Agents to compare, of {ALL_AGENTS}. Default: all except those in brackets."
+    ),
+]
+AgentName = Annotated[
+    str,
+    typer.Argument(
+        help="random, scripted, oracle, a file written by `babble`, or a zip of stable-baselines3 "
+        "(which contains pickled Python: use only files you trust)."
+    ),
+]
+Picture = Annotated[Path, typer.Option("--out", help="Picture: png, svg or pdf.")]

@@ -1,0 +1,57 @@
+"""`gym-babble babble`."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from gym_babble.cli.arguments import (
+    AsJson,
+    Babbles,
+    ConfigName,
+    Movements,
+    QuasiStatic,
+    Seed,
+    TaskName,
+    Variant,
+)
+from gym_babble.cli.learning import learn_grasping, learn_reaching
+from gym_babble.cli.output import check_folder_of, print_json, print_results
+from gym_babble.study.rates import share
+from gym_babble.study.tasks import TASKS
+
+__all__ = ["babble"]
+
+
+def babble(
+    *,
+    file: Annotated[Path, typer.Option("--out", help="File for the agent.")],
+    task: TaskName = "reach",
+    variant: Variant = "paper",
+    movements: Movements = 20_000,
+    babbles: Babbles = 1_000,
+    seed: Seed = 0,
+    config: ConfigName = "paper",
+    quasi_static: QuasiStatic = False,
+    as_json: AsJson = False,
+) -> None:
+    """Let an agent babble and learn, and save it."""
+    check_folder_of(file)
+    settings: dict[str, Any] = {"config": config, "seed": seed}
+    if task == "reach":
+        agent = learn_reaching(variant, movements, seed, config, quasi_static=quasi_static)
+        trials, accepted = agent.movements, agent.legal_movements
+        agent.save(file)
+        settings = {"variant": variant, **settings, "quasi_static": quasi_static}
+    else:
+        grasping_agent = learn_grasping(babbles, seed, config)
+        trials, accepted = grasping_agent.babbles, grasping_agent.kept
+        grasping_agent.save(file)
+    names, rate = TASKS[task], accepted / trials
+    if as_json:
+        counts = {names.trials: trials, f"{names.accepted}_{names.trials}": accepted}
+        print_json({"file": str(file), **settings, **counts, f"{names.accepted}_rate": rate})
+        return
+    print_results(
+        f"{trials:,} {names.trials}, {accepted:,} of them {names.accepted} ({share(rate)}): {file}"
+    )

@@ -1,0 +1,75 @@
+"""`gym-babble info`."""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Annotated, Any
+
+import gymnasium
+import typer
+from rich.table import Table
+
+from gym_babble.cli.arguments import AsJson, ConfigName
+from gym_babble.cli.output import print_json, print_results
+from gym_babble.envs.registration import ENVIRONMENTS
+from gym_babble.study.tables import plain_table
+from gym_babble.study.tasks import task_of
+
+__all__ = ["info"]
+
+
+def info(
+    env_id: Annotated[str, typer.Argument(metavar="ID", help="An id from `list`.")],
+    config: ConfigName = "paper",
+    as_json: AsJson = False,
+) -> None:
+    """Show an environment: senses, action, reward terms, limits."""
+    task_of(env_id)
+    row = next(row for row in ENVIRONMENTS if row.id == env_id)
+    env: Any = gymnasium.make(env_id, config=config)
+    spec = env.unwrapped.choices.spec
+    goals = list(spec.goals) if row.obs == "goal" else []
+    described = {
+        **asdict(row),
+        "observation_space": str(env.observation_space),
+        "action_space": str(env.action_space),
+        "senses": [asdict(entry) for entry in (*spec.senses, *goals)],
+        "action": asdict(spec.action),
+        "reward_terms": spec.reward_terms,
+        "outcomes": spec.outcomes,
+        "max_episode_steps": spec.max_episode_steps,
+        "control_hz": spec.control_hz,
+    }
+    if as_json:
+        print_json(described)
+    else:
+        print_results(*_tables(described))
+
+
+def _tables(described: dict[str, Any]) -> list[Table]:
+    """Options and limits of an environment, its senses, and its action."""
+    facts = plain_table(described["id"], ["", ""], left=2)
+    facts.show_header = False
+    for name in ("obs", "control", "reward", "max_episode_steps", "control_hz", "reward_threshold"):
+        facts.add_row(name, str(described[name]))
+    for name in ("reward_terms", "outcomes"):
+        facts.add_row(name, ", ".join(described[name]))
+    senses, action = described["senses"], [described["action"]]
+    return [facts, _entries_table("senses", senses), _entries_table("action", action)]
+
+
+def _entries_table(title: str, entries: Sequence[dict[str, Any]]) -> Table:
+    heads = ["name", "parts", "low", "high", "unit", "meaning"]
+    table = plain_table(f"\n{title}", heads, left=len(heads))
+    for entry in entries:
+        table.add_row(entry["name"], *_parts(entry), entry["unit"], entry["description"])
+    return table
+
+
+def _parts(entry: dict[str, Any]) -> tuple[str, ...]:
+    """Labels and bounds of an entry. The parts of a map are identical: one row counts them."""
+    n = len(entry["labels"])
+    rows = list(zip(entry["labels"], entry["low"], entry["high"], strict=True))
+    if len(set(rows)) == 1 < n:
+        rows = [(f"{n} {rows[0][0]}", *rows[0][1:])]
+    labels, lows, highs = zip(*rows, strict=True)
+    return "\n".join(labels), *("\n".join(f"{x:.4g}" for x in ends) for ends in (lows, highs))

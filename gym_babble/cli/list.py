@@ -1,0 +1,32 @@
+"""`gym-babble list`."""
+
+from dataclasses import asdict
+from typing import Any
+
+import gymnasium
+
+from gym_babble.cli.arguments import AsJson
+from gym_babble.cli.output import print_json, print_results
+from gym_babble.envs.registration import ENVIRONMENTS
+from gym_babble.study.tables import plain_table
+
+__all__ = ["list_environments"]
+
+
+def list_environments(as_json: AsJson = False) -> None:
+    """List the environments."""
+    listed = []
+    for row in ENVIRONMENTS:
+        env: Any = gymnasium.make(row.id)
+        steps = env.unwrapped.choices.spec.max_episode_steps
+        listed.append({**asdict(row), "max_episode_steps": steps})
+    if as_json:
+        print_json(listed)
+        return
+    table = plain_table(None, ["id", "obs", "control", "reward", "steps", "solved at"], left=4)
+    for found in listed:
+        threshold = found["reward_threshold"]
+        cells = (str(found[name]) for name in ("id", "obs", "control", "reward"))
+        steps = str(found["max_episode_steps"])
+        table.add_row(*cells, steps, "" if threshold is None else f"{threshold:g}")
+    print_results(table)

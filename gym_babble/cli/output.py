@@ -1,0 +1,69 @@
+"""Printing results and messages, and checking paths before long work."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import typer
+from rich.console import Console
+
+from gym_babble.errors import ConfigError
+from gym_babble.viz.style import check_format
+
+__all__ = [
+    "check_folder_of",
+    "check_picture",
+    "name_files",
+    "print_json",
+    "print_results",
+    "say",
+    "write_table",
+]
+
+results = Console()
+messages = Console(stderr=True)
+
+
+def print_results(*parts: Any) -> None:
+    """Prints tables or lines of text to stdout."""
+    for part in parts:
+        results.print(part, highlight=False)
+
+
+def print_json(document: Any) -> None:
+    """Prints a document of JSON types to stdout."""
+    typer.echo(json.dumps(document, indent=2))
+
+
+def say(text: str) -> None:
+    """Prints a message to stderr."""
+    messages.print(text, highlight=False, markup=False)
+
+
+def name_files(files: list[Path]) -> None:
+    """Prints the names of written files to stderr."""
+    for file in files[:3]:
+        say(str(file))
+    if len(files) > 3:
+        say(f"... and {len(files) - 3} more")
+
+
+def check_folder_of(path: Path) -> None:
+    """Raises `ConfigError` if the folder of a file to be written is missing."""
+    if not path.absolute().parent.is_dir():
+        raise ConfigError(f"--out {path}: folder {path.parent} is missing; create it first")
+
+
+def check_picture(path: Path) -> None:
+    """Checks folder, format and the extra `figures` before long work."""
+    check_folder_of(path)
+    check_format(path)
+
+
+def write_table(folder: Path, name: str, document: dict[str, Any], csv: str) -> None:
+    """Writes a table as JSON and CSV into a folder, which is created if missing."""
+    folder.mkdir(exist_ok=True)
+    files = [folder / f"{name}.json", folder / f"{name}.csv"]
+    files[0].write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
+    files[1].write_text(csv, encoding="utf-8")
+    name_files(files)

@@ -1,0 +1,38 @@
+"""`gym-babble render`."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from gym_babble.agents.loading import load_agent
+from gym_babble.cli.arguments import AgentName, EnvId, OwnConfig, Seed
+from gym_babble.cli.output import check_folder_of, name_files, say
+from gym_babble.viz.film import record, save_film
+
+__all__ = ["render"]
+
+
+def render(
+    agent: AgentName,
+    *,
+    folder: Annotated[Path, typer.Option("--out", help="Folder for the pictures.")],
+    kind: Annotated[
+        Literal["png", "gif", "mp4"], typer.Option("--format", help="Format of the film.")
+    ] = "gif",
+    seed: Seed = 0,
+    camera: Annotated[
+        Literal["third_person", "eye", "fovea", "edges"], typer.Option(help="Camera.")
+    ] = "third_person",
+    size: Annotated[
+        int, typer.Option(min=16, max=4096, help="Width and height of a picture [pixel].")
+    ] = 360,
+    env_id: EnvId = None,
+    config: OwnConfig = None,
+) -> None:
+    """Film an episode of an agent: a contact sheet, and frames, GIF or MP4."""
+    check_folder_of(folder)
+    loaded = load_agent(agent, env_id=env_id, config=config, seed=seed)
+    film = record(loaded, seed=seed, camera=camera, size=size)
+    say(f"{film.outcome} after {len(film.frames) - 1} control steps")
+    name_files(save_film(film, folder, kind))

@@ -1,0 +1,121 @@
+"""Reproduces Table I and Figures 2, 4 and 5."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from gym_babble.cli.arguments import (
+    AsJson,
+    Cases,
+    ConfigName,
+    Movements,
+    Picture,
+    QuasiStatic,
+    Seed,
+    Seeds,
+    Variant,
+)
+from gym_babble.cli.learning import learn_reaching
+from gym_babble.cli.output import (
+    check_folder_of,
+    check_picture,
+    name_files,
+    print_json,
+    print_results,
+    write_table,
+)
+from gym_babble.paper import fig2 as generators
+from gym_babble.paper import fig4 as movements_to_targets
+from gym_babble.paper import fig5 as weights
+from gym_babble.paper import table1 as rates
+from gym_babble.paper.tables import table1_table
+from gym_babble.study.rates import share
+from gym_babble.study.scenarios import scenarios
+from gym_babble.viz.style import save
+
+__all__ = ["fig2", "fig4", "fig5", "table1"]
+
+
+def table1(
+    *,
+    seeds: Seeds = 5,
+    cases: Cases = 1_000,
+    config: ConfigName = "paper",
+    variant: Variant = "paper",
+    control: Annotated[
+        Literal["pattern", "delta_posture"], typer.Option(help="Control in the tests.")
+    ] = "pattern",
+    quasi_static: QuasiStatic = False,
+    movements: Movements = 20_000,
+    folder: Annotated[Path, typer.Option("--out", help="Folder for table1.json and .csv.")] = (
+        Path()
+    ),
+    as_json: AsJson = False,
+) -> None:
+    """Table I: outcomes of reaching, beside the paper's rates."""
+    check_folder_of(folder)
+    table = rates.table1(
+        seeds=seeds,
+        cases=cases,
+        config=config,
+        variant=variant,
+        control=control,
+        quasi_static=quasi_static,
+        movements=movements,
+        progress_bar=True,
+    )
+    document = table.to_json()
+    if as_json:
+        print_json(document)
+    else:
+        title = f"Table I: Hebb {variant}, config {config}, {control} control"
+        print_results(table1_table(document, title))
+    write_table(folder, "table1", document, table.to_csv())
+
+
+def fig2(file: Picture = Path("fig2.png")) -> None:
+    """Figure 2: paths of the pattern generators."""
+    check_picture(file)
+    save(generators.draw(), file)
+    name_files([file])
+
+
+def fig4(
+    file: Picture = Path("fig4.png"),
+    variant: Variant = "paper",
+    movements: Movements = 20_000,
+    seed: Seed = 0,
+    config: ConfigName = "paper",
+) -> None:
+    """Figure 4: trajectories to 4 targets from 36 starts around each."""
+    check_picture(file)
+    agent = learn_reaching(variant, movements, seed, config)
+    cases = scenarios("fig4", config=config)
+    exchanged_cases = [movements_to_targets.switched(case) for case in cases]
+    halfway = movements_to_targets.trajectories(agent, cases, config)
+    exchanged = movements_to_targets.trajectories(agent, exchanged_cases, config)
+    missing = movements_to_targets.starts_without_case(config)
+    save(movements_to_targets.draw(halfway, exchanged, missing), file)
+    for name, played in (("obstacle halfway", halfway), ("switched", exchanged)):
+        reached = sum(movement.outcome == "success" for movement in played)
+        print_results(f"{name}: {reached} of {len(played)} reach")
+    print_results(f"{len(missing)} starts have no case")
+    name_files([file])
+
+
+def fig5(
+    file: Picture = Path("fig5.png"),
+    movements: Movements = 20_000,
+    seed: Seed = 0,
+    config: ConfigName = "paper",
+) -> None:
+    """Figure 5: the weights of two sets of input neurons."""
+    check_picture(file)
+    sets = weights.weight_sets(learn_reaching("paper", movements, seed, config))
+    save(weights.draw(sets), file)
+    print_results(
+        f"{sets.left.sum()} input neurons curve left, {sets.right.sum()} right; the mean of one "
+        f"set correlates {share(sets.mirror_correlation)} with the mirrored mean of the other"
+    )
+    name_files([file])

@@ -1,0 +1,86 @@
+"""Tables I and II for the terminal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from gym_babble.study.rates import OUTCOMES, share
+from gym_babble.study.tables import format_interval, plain_table, rate_cells, rates_table
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rich.table import Table
+
+__all__ = ["table1_table", "table2_tables"]
+
+
+def table1_table(document: dict[str, Any], title: str) -> Table:
+    """`TableOne.to_json()` as a table: the paper, each seed, all together, and over seeds."""
+    table = rates_table(title, "legal")
+    table.add_row("the paper", *rate_cells(document["paper"]), "≈.20")
+    for seed in document["by_seed"]:
+        table.add_row(f"seed {seed['seed']}", *rate_cells(seed), share(seed["legal_rate"]))
+    pooled = document["pooled"]
+    table.add_row("[bold]pooled[/]", *rate_cells(pooled), share(pooled["legal_rate"]))
+    spreads = document["over_seeds"]
+    if spreads["success"]["low"] is not None:
+        cells = [
+            f"{share(spreads[name]['mean'])}\n{format_interval(spreads[name])}"
+            for name in (*OUTCOMES, "legal_rate")
+        ]
+        table.add_row("over seeds\n[dim]t interval[/]", *cells)
+    return table
+
+
+def table2_tables(document: dict[str, Any]) -> list[Table]:
+    """`TableTwo.to_json()` as tables: hands as in the paper, rates of each fact, and holding."""
+    sizes = document["sizes"]
+    paper = [document["paper"]["small"], document["paper"]["big"]]
+    names = [f"{100 * size['diameter']:g} cm" for size in sizes]
+    # The paper's small and big objects (docs/grasping.md); other sizes have no counterpart.
+    printed = dict(zip(("2.4 cm", "6 cm"), paper, strict=True))
+    heads = ["", "recalled\n[dim]spread[/]", "babbled\n[dim]spread[/]", "paper", "paper's\nideal"]
+    hands = plain_table("Table II: equilibrium points, 90° − flexion [deg]", heads)
+    for name, size in zip(names, sizes, strict=True):
+        for digit, found in size["hand"].items():
+            cells = [
+                "–" if found[mean] is None else f"{found[mean]:.2f}\n[dim]{found[spread]:.2f}[/]"
+                for mean, spread in (("mean", "spread"), ("babbled_mean", "babbled_spread"))
+            ]
+            known = printed.get(name, {}).get(digit)
+            theirs = [f"{known['mean']:.2f}", f"{known['ideal']:.0f}"] if known else ["", ""]
+            hands.add_row(f"{name}, {digit}", *cells, *theirs)
+    rates = plain_table(
+        "\nReached, and grasped without support",
+        ["", "tests", "any part\ntouches", "palm\ntouches", "grasped", "paper:\nreach", "grasp"],
+    )
+    for name, size in zip(names, sizes, strict=True):
+        for protocol, found in size["tests"].items():
+            pooled = found["pooled"]
+            cells = [
+                f"{share(pooled[fact]['rate'])}\n{format_interval(pooled[fact])}"
+                for fact in ("reach", "palm_reach", "held")
+            ]
+            known = printed.get(name) if protocol == "table2" else None
+            theirs = [share(known["reach"]), share(known["held"])] if known else ["", ""]
+            rates.add_row(f"{name}, {protocol}", f"{pooled['tests']:,}", *cells, *theirs)
+    return [hands, rates, *([_hold_table(document["hold"])] if document["hold"] else [])]
+
+
+def _hold_table(rates: Sequence[dict[str, Any]]) -> Table:
+    table = plain_table(
+        "\nHeld through 10 s of arm motion without support",
+        ["diameter", "held", "of", "rate", "deepest\n[dim]mm[/]", "flexion\n[dim]thumb, finger[/]"],
+    )
+    for rate in rates:
+        thumb, finger = rate["flexion_deg"]
+        table.add_row(
+            f"{100 * rate['diameter']:g} cm",
+            str(rate["held"]),
+            str(rate["trials"]),
+            f"{share(rate['rate'])}\n{format_interval(rate)}",
+            f"{rate['penetration_mm']:.2f}",
+            f"{thumb:.1f}° {finger:.1f}°",
+        )
+    return table

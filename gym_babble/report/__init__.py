@@ -1,0 +1,39 @@
+"""The report of a comparison: one HTML file with its pictures inside, and its numbers as JSON."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+from gym_babble.report.page import page_of
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from gym_babble.study.comparison import Comparison
+
+__all__ = ["write_report"]
+
+
+def write_report(
+    comparison: Comparison, folder: Path, command: str, other: str | None = None
+) -> list[Path]:
+    """Writes index.html and results.json into a folder.
+
+    Args:
+        comparison: The results to report.
+        folder: Folder of the report; created if missing.
+        command: The command that creates this report.
+        other: Path from this page to the other task's page, for a link.
+
+    Returns:
+        The page and the JSON file.
+
+    Raises:
+        MissingExtraError: matplotlib is not installed.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    results, page = folder / "results.json", folder / "index.html"
+    results.write_text(json.dumps(comparison.to_json(), indent=2) + "\n", encoding="utf-8")
+    page.write_text(page_of(comparison, command, other), encoding="utf-8")
+    return [page, results]

@@ -1,0 +1,104 @@
+"""The section of a report with a movement or a grasp, frame by frame."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gym_babble.agents.loading import LoadedAgent
+from gym_babble.report.html import figure_html, png_source
+from gym_babble.study.comparison import TrainedResult
+from gym_babble.study.scenarios import scenarios
+from gym_babble.viz.film import contact_sheet, png, record
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from gym_babble.study.comparison import Comparison
+    from gym_babble.study.scenarios import GraspScenario, Scenario
+    from gym_babble.viz.film import Film
+
+__all__ = ["grasp_section", "movement_section"]
+
+
+def _filmed(
+    comparison: Comparison, worth: Callable[[Any], float]
+) -> tuple[TrainedResult, Any, Film, bytes] | None:
+    """A film of the first trained agent's success that shows most.
+
+    Args:
+        comparison: The comparison.
+        worth: Rates how much a case shows.
+
+    Returns:
+        The result, the case, the film, and the eye's view before; None without trained agents.
+    """
+    played = [result for result in comparison.results if isinstance(result, TrainedResult)]
+    if not played:
+        return None
+    result = played[0]
+    trained, config = result.trained[0], comparison.settings.config
+    cases = scenarios(comparison.task.protocol, comparison.settings.cases, config=config)
+    solved = [
+        case
+        for case, outcome in zip(cases, result.tests[0].outcomes, strict=True)
+        if outcome == "success"
+    ]
+    case = max(solved or cases, key=worth)
+    loaded = LoadedAgent(trained.agent, trained.env_id, config, trained.env_kwargs)
+    film = record(loaded, options={"scenario": case}, size=600)
+    eye = record(loaded, options={"scenario": case}, camera="eye", size=630).frames[0]
+    return result, case, film, png(eye)
+
+
+def movement_section(comparison: Comparison) -> str:
+    """A movement of reaching."""
+    filmed = _filmed(comparison, _visibility)
+    if filmed is None:
+        return ""
+    result, case, film, eye = filmed
+    near = [frame[60:400, 80:420] for frame in film.frames]  # The arm stays in the middle.
+    return (
+        f"<h2>A movement</h2>\n<p>{escape(result.contender.title)} on case {case['index']}: "
+        f"{film.outcome.replace('_', ' ')}.</p>\n"
+        '<div class="photos">'
+        + figure_html(
+            png_source(eye),
+            "The eye's view before the movement: 630 × 630 pixels, 120°, on the target.",
+        )
+        + figure_html(png_source(png(contact_sheet(near))), "The movement, row by row.")
+        + "</div>\n"
+    )
+
+
+def _visibility(case: Scenario) -> float:
+    """How much a case of reaching shows: best is a long path near the picture's middle."""
+    start, target = np.array(case["start"]), np.array(case["target"])
+    middle = 0.5 * (start + target)
+    return float(np.linalg.norm(target - start) - np.linalg.norm(middle - (0.0, 0.3)))
+
+
+def grasp_section(comparison: Comparison) -> str:
+    """A grasp."""
+    filmed = _filmed(comparison, _size)
+    if filmed is None:
+        return ""
+    result, case, film, eye = filmed
+    return (
+        f"<h2>A grasp</h2>\n<p>{escape(result.contender.title)} on case {case['index']}: "
+        f"{film.outcome.replace('_', ' ')}.</p>\n"
+        '<div class="photos">'
+        + figure_html(
+            png_source(eye),
+            "The eye's view before the grasp: 630 × 630 pixels, 120°, on the object.",
+        )
+        + figure_html(png_source(png(contact_sheet(film.frames))), "The grasp, row by row.")
+        + "</div>\n"
+    )
+
+
+def _size(case: GraspScenario) -> float:
+    """How much a case of grasping shows: best is a big object."""
+    return case["diameter"]

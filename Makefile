@@ -13,7 +13,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 STAMPS := $(VENV)/stamps
-RLLIB := .venv-rllib
+FRAMEWORKS := .venv-frameworks
 PEERS := .venv-bench
 
 # One interpreter for every build of pyo3, so that none undoes another.
@@ -25,7 +25,8 @@ EXTENSION_SOURCES := Cargo.toml Cargo.lock $(shell find rust -type f -not -name 
 	$(foreach folder,$(NOT_IN_EXTENSION),-not -path '*/$(folder)/*'))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test lint lint-rust lint-python lint-workflows golden-native deny bench microbench rllib constraints audit-export clean
+.PHONY: help setup demo test slow soak fuzz lint lint-rust lint-python lint-workflows deny golden-native wasm \
+	frameworks bench microbench constraints audit-export clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -40,9 +41,20 @@ test: setup ## Run the Rust and the Python tests
 	cargo test
 	$(BIN)/python -m pytest
 
-# In a folder of its own, as other flags build all crates anew.
+slow: setup ## Run the slow tests (some minutes)
+	$(BIN)/python -m pytest -m slow
+
+soak: setup ## Play both tasks at random, ten million steps each, in Rust and through Python (an hour)
+	cargo test --release --test soak -- --ignored --nocapture
+	$(BIN)/python -m pytest -m soak -s
+
+# ROUNDS=20 runs more rounds, SEED=123 starts at that seed: see .ci/fuzz.
+fuzz: setup ## Run the property tests with fresh draws, and the fuzz targets if cargo-fuzz is here
+	.ci/fuzz
+
+# Naming the target keeps what it builds apart from what has other flags.
 golden-native: ## Compare the golden trajectories in a release build for this very processor
-	RUSTFLAGS='-C target-cpu=native' cargo test --release -p babble_env --test golden --target-dir target/native
+	RUSTFLAGS='-C target-cpu=native' cargo run --release -p babble_golden --target "$$(rustc --print host-tuple)"
 
 lint: lint-rust lint-python lint-workflows deny ## Check formatting, lints and types of both languages, and what they depend on
 
@@ -71,8 +83,8 @@ microbench: setup ## Measure parts: criterion in Rust, pytest-benchmark in Pytho
 	cargo bench
 	$(BIN)/python -m pytest -o python_files='bench_*.py' --benchmark-only
 
-rllib: $(RLLIB)/installed ## Train a little with RLlib, which needs an environment of its own
-	$(RLLIB)/bin/python examples/rllib_ppo.py
+frameworks: $(FRAMEWORKS)/installed ## Run the examples of frameworks that need an environment of their own (RLlib)
+	$(FRAMEWORKS)/bin/python examples/rllib_ppo.py
 
 constraints: $(STAMPS)/dependencies ## Pin the newest releases that pyproject.toml allows, for every Python and platform
 	$(BIN)/uv pip compile pyproject.toml --all-extras --universal --python-version 3.10 --upgrade \
@@ -85,7 +97,7 @@ audit-export: $(STAMPS)/dependencies ## Write the pinned Python dependencies wit
 		--output-file build/requirements.txt
 
 clean: ## Remove what the other targets made
-	rm -rf $(VENV) $(RLLIB) $(PEERS) target report build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
+	rm -rf $(VENV) $(FRAMEWORKS) $(PEERS) target report build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
 	find gym_babble tests bench -name __pycache__ -prune -exec rm -rf {} +
 	rm -f gym_babble/_core*.so
 
@@ -110,10 +122,10 @@ $(STAMPS)/extension: $(STAMPS)/dependencies $(EXTENSION_SOURCES)
 	@touch $@
 
 # The package as users install it, a wheel, beside the Gymnasium that RLlib pins.
-$(RLLIB)/installed: $(STAMPS)/extension $(shell find gym_babble -name '*.py')
-	@test -x $(RLLIB)/bin/pip || "$(PYTHON)" -m venv $(RLLIB)
-	rm -rf $(RLLIB)/wheel
-	$(BIN)/maturin build --release --out $(RLLIB)/wheel
-	$(RLLIB)/bin/python -m pip install --disable-pip-version-check --quiet 'ray[rllib]>=2.60,<3' torch $(RLLIB)/wheel/*.whl
-	$(RLLIB)/bin/python -m pip install --disable-pip-version-check --quiet --force-reinstall --no-deps $(RLLIB)/wheel/*.whl
+$(FRAMEWORKS)/installed: $(STAMPS)/extension $(shell find gym_babble -name '*.py')
+	@test -x $(FRAMEWORKS)/bin/pip || "$(PYTHON)" -m venv $(FRAMEWORKS)
+	rm -rf $(FRAMEWORKS)/wheel
+	$(BIN)/maturin build --release --out $(FRAMEWORKS)/wheel
+	$(FRAMEWORKS)/bin/python -m pip install --disable-pip-version-check --quiet 'ray[rllib]>=2.60,<3' torch $(FRAMEWORKS)/wheel/*.whl
+	$(FRAMEWORKS)/bin/python -m pip install --disable-pip-version-check --quiet --force-reinstall --no-deps $(FRAMEWORKS)/wheel/*.whl
 	@touch $@

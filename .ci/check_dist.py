@@ -7,7 +7,14 @@ import tarfile
 import zipfile
 from pathlib import Path
 
-SDIST_NEEDS = {"Cargo.toml", "Cargo.lock", "pyproject.toml", "README.md", "LICENSE-MIT"}
+SDIST_NEEDS = {
+    ".cargo/config.toml",  # The seed of the property tests.
+    "Cargo.lock",
+    "Cargo.toml",
+    "LICENSE-MIT",
+    "README.md",
+    "pyproject.toml",
+}
 
 
 def check_wheel(path: Path) -> None:

@@ -1,6 +1,6 @@
 """PPO from RLlib's new API stack on the native batch: a few training steps.
 
-RLlib pins its own Gymnasium and brings much else: `make rllib` runs this in an environment apart.
+RLlib pins its own Gymnasium and brings much else: `make frameworks` runs this apart.
 The prefix in `gym_babble:BabbleReach-v0` makes each of Ray's workers import the package.
 """
 

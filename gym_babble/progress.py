@@ -11,9 +11,13 @@ __all__ = ["track"]
 
 
 def track(parts: Iterable[int], text: str, *, total: int, show: bool) -> Iterator[int]:
-    """Yields the parts of a whole, showing how much of `total` is done and the time left.
+    """Yields the parts and shows progress towards `total`, with the time left.
 
-    The bar goes to stderr: stdout belongs to results.
+    Args:
+        parts: Sizes of the parts; their sum is `total`.
+        text: Label of the bar.
+        total: Sum of all parts.
+        show: Show the bar, on stderr; stdout is for results.
     """
     if not show:
         yield from parts

@@ -1,4 +1,4 @@
-"""The batch in the core behind stable-baselines3's VecEnv.
+"""The native batch as a stable-baselines3 `VecEnv`.
 
 >>> from stable_baselines3 import PPO
 >>> from gym_babble.sb3 import BabbleVecEnv
@@ -42,18 +42,18 @@ __all__ = ["BabbleVecEnv", "ProgressBar"]
 class BabbleVecEnv(VecEnv):
     """Many environments of one id, stepped together in the core.
 
-    It gives what a `DummyVecEnv` of the same environments, each in a `Monitor`, gives: environment
-    i seeded s is the single environment seeded s + i, an ended episode begins anew in the same step
-    with `terminal_observation`, `TimeLimit.truncated` and `episode` in its info, and options set by
-    `set_options` go to the next reset and hold for the episodes after it.
+    It behaves like a `DummyVecEnv` of the same environments, each in a `Monitor`. With seed s,
+    environment i equals the single environment with seed s + i. An ended episode restarts in the
+    same step, with `terminal_observation`, `TimeLimit.truncated` and `episode` in its info. Options
+    of `set_options` apply to the next reset and to all later episodes.
 
     Args:
         env_id: A registered id.
-        num_envs: How many environments.
+        num_envs: Number of environments.
         env_kwargs: Further arguments of the environment and of its batch, e.g. `threads=1`.
 
     Raises:
-        ConfigError: An argument is not one there is.
+        ConfigError: An unknown or invalid argument.
     """
 
     def __init__(
@@ -74,11 +74,11 @@ class BabbleVecEnv(VecEnv):
         self._began = time.time()
 
     def reset(self) -> VecEnvObs:
-        """Begins new episodes, with what `seed` and `set_options` have set.
+        """Starts new episodes, with the seeds of `seed` and the options of `set_options`.
 
         Raises:
-            ConfigError: An option is unknown.
-            ScenarioError: A case asked for cannot be played.
+            ConfigError: An unknown option.
+            ScenarioError: A requested case that cannot be played.
         """
         seeds, options = self._seeds, self._options
         self._reset_seeds()
@@ -97,15 +97,15 @@ class BabbleVecEnv(VecEnv):
         return observation  # type: ignore[no-any-return]
 
     def step_async(self, actions: NDArray[Any]) -> None:
-        """Takes the actions of the next step (n, k)."""
+        """Stores the actions of the next step (n, k)."""
         self._actions = actions
 
     def step_wait(self) -> VecEnvStepReturn:
-        """One step of every environment; those that end begin anew.
+        """Steps all environments. Those that end restart.
 
         Raises:
-            ActionError: An action is NaN, infinite or of a wrong shape or type.
-            gymnasium.error.ResetNeeded: There was no reset yet.
+            ActionError: An action with NaN, infinity, or a wrong shape or type.
+            gymnasium.error.ResetNeeded: A step before the first reset.
         """
         observation, rewards, terminated, truncated, infos = self.envs.step(self._actions)
         dones = terminated | truncated
@@ -123,7 +123,7 @@ class BabbleVecEnv(VecEnv):
         return observation, rewards.astype(np.float32), dones, listed
 
     def _end_episode(self, i: int) -> dict[str, Any]:
-        """What `Monitor` says of an ended episode: return, length, seconds since the beginning."""
+        """The statistics of `Monitor`: return, length, seconds since the start."""
         statistics = {
             "r": round(float(self._returns[i]), 6),
             "l": int(self._lengths[i]),
@@ -134,18 +134,18 @@ class BabbleVecEnv(VecEnv):
         return statistics
 
     def get_attr(self, attr_name: str, indices: VecEnvIndices = None) -> list[Any]:
-        """An attribute of each of the environments."""
+        """An attribute of each environment."""
         return [self._of_one(i, attr_name) for i in self._get_indices(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
         """Sets an attribute, which all environments share.
 
         Raises:
-            AttributeError: The environments have their own values of it, set at a reset.
-            ConfigError: `indices` does not name all environments.
+            AttributeError: Each environment has its own value, which a reset sets.
+            ConfigError: `indices` omits some environments.
         """
         if sorted(self._get_indices(indices)) != list(range(self.num_envs)):
-            raise ConfigError(f"{attr_name}: the environments share it; leave out indices")
+            raise ConfigError(f"{attr_name}: all environments share this attribute; omit indices")
         self.envs.set_attr(attr_name, [value] * self.num_envs)
 
     def env_method(
@@ -155,7 +155,7 @@ class BabbleVecEnv(VecEnv):
         indices: VecEnvIndices = None,
         **method_kwargs: Any,
     ) -> list[Any]:
-        """Calls a method of each of the environments."""
+        """Calls a method of each environment."""
         methods = self.get_attr(method_name, indices)
         return [method(*method_args, **method_kwargs) for method in methods]
 
@@ -164,7 +164,7 @@ class BabbleVecEnv(VecEnv):
         wrapper_class: type[gymnasium.Wrapper[Any, Any, Any, Any]],
         indices: VecEnvIndices = None,
     ) -> list[bool]:
-        """Whether the environments are in such a wrapper: in effect in a `Monitor`, in no other."""
+        """Whether the wrapper is `Monitor`, the only one whose function the batch includes."""
         return [issubclass(Monitor, wrapper_class) for _ in self._get_indices(indices)]
 
     def get_images(self) -> Sequence[NDArray[np.uint8] | None]:
@@ -182,7 +182,7 @@ class BabbleVecEnv(VecEnv):
 
     def _of_one(self, i: int, name: str) -> Any:
         if name in ("reset", "step"):
-            raise AttributeError(f"{name} is the batch's: the environments are stepped together")
+            raise AttributeError(f"{name}: single environments cannot {name}; use that of the batch")
         return self.envs.of_one(i, name)
 
 
@@ -209,7 +209,7 @@ class ProgressBar(BaseCallback):
 
 
 def _as_scenario(options: dict[str, Any]) -> dict[str, Any]:
-    """Options of one environment, in the form in which the batch takes one for each."""
+    """Options of one environment as a scenario, because the batch takes a list of scenarios."""
     scenario = options.get("scenario") or {}
     return {**scenario, **{name: value for name, value in options.items() if name != "scenario"}}
 

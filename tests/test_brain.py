@@ -37,7 +37,7 @@ def test_the_rule_is_five_lines_of_numpy(eta):
     assert rule.recall(g) == pytest.approx(np.tanh(w @ g).clip(0), abs=1e-5)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(b1=st.floats(0.02, 0.98), b2=st.floats(0.02, 0.98))
 def test_generators_follow_the_incomplete_beta_function(b1, b2):
     # Eq. 5: the derivative of c_x over time is gamma c_x^b1 (1 - c_x)^b2, so that time over T is
@@ -55,7 +55,7 @@ def test_generators_follow_the_incomplete_beta_function(b1, b2):
 
 
 @given(b1=st.floats(0.02, 0.98))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_babbled_movements_are_point_symmetric(b1):
     # For b2 = 1 - b1: T = pi / (gamma sin(pi b1)), and c_y(s) = 1 - c_x(1 - s).
     assert beta(1 - b1, b1) == pytest.approx(np.pi / np.sin(np.pi * b1))

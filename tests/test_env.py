@@ -68,7 +68,7 @@ ACTIONS = st.lists(st.tuples(*[EXTREMES] * 4), min_size=1, max_size=60)
 
 
 @pytest.mark.parametrize("of", EACH_CONTROL, ids="-".join)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(
     actions=ACTIONS,
     seed=st.integers(0, 10_000),
@@ -166,7 +166,7 @@ def test_a_copy_from_before_the_first_reset_is_as_good_as_new(task):
         assert other.reset(seed=1)[0]["eye"].shape == (2,)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(
     of=st.sampled_from(EACH_CONTROL),
     goal=st.booleans(),

@@ -52,7 +52,7 @@ def actions_for(env: Any, n: int, seed: int) -> list[Any]:
     return list(np.repeat(held, 5, axis=0)[:n])
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     kind=kinds(),
     seed=st.integers(0, 1000),
@@ -169,7 +169,7 @@ def test_each_byte_altered_and_each_length_are_refused(task):
 
 
 @each_task
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(
     noise=st.binary(max_size=2000),
     keep=st.integers(0, 40),

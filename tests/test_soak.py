@@ -21,7 +21,7 @@ def test_a_short_soak(task, steps, outcomes):
     assert set(tally.outcomes) >= outcomes
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 @pytest.mark.parametrize("task", ["reach", "grasp"])
 def test_a_long_soak(task):
     tally = soak(task, 10_000_000, show=True)

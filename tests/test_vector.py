@@ -117,7 +117,7 @@ def test_a_thread_is_woken_for_so_many_environments_and_no_more_than_processors(
     assert [BATCHES[task](k).threads for k in (1, 2 * n - 1, 2 * n, 9 * n)] == [1, 1, 2, 3]
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(
     task=st.sampled_from(sorted(TASKS)),
     mode=st.sampled_from(MODES),

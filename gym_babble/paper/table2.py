@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from gym_babble.agents.base import Agent
     from gym_babble.config import ConfigLike
-    from gym_babble.study.scenarios import GraspScenario
+    from gym_babble.study.scenarios import GraspProtocol, GraspScenario
 
 __all__ = [
     "FACTS",
@@ -57,7 +57,7 @@ PAPER_TABLE_II: dict[str, dict[str, Any]] = {
 }
 """Table II of the paper: learned and ideal equilibrium points [deg], and rates."""
 
-PROTOCOLS = ("table2", "palm_side", "full")
+PROTOCOLS: tuple[GraspProtocol, ...] = ("table2", "palm_side", "full")
 
 TEST_STEPS = 240
 """Time limit of a test [control steps]."""

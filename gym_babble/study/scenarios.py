@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict, overload
 
 from gym_babble import _core
 from gym_babble.config import ConfigLike, config_json
@@ -12,7 +12,15 @@ from gym_babble.errors import ConfigError
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["PROTOCOLS", "SPLITS", "GraspScenario", "Scenario", "scenarios"]
+__all__ = [
+    "PROTOCOLS",
+    "SPLITS",
+    "GraspProtocol",
+    "GraspScenario",
+    "ReachProtocol",
+    "Scenario",
+    "scenarios",
+]
 
 PROTOCOLS = {
     "table1": "reach",
@@ -26,6 +34,13 @@ PROTOCOLS = {
 
 SPLITS = ("learning", "validation", "test")
 """Disjoint sets of cases."""
+
+
+ReachProtocol: TypeAlias = Literal["table1", "fig4"]
+"""Protocols of reaching."""
+
+GraspProtocol: TypeAlias = Literal["table2", "fig7", "palm_side", "full"]
+"""Protocols of grasping."""
 
 
 class Scenario(TypedDict):
@@ -59,6 +74,31 @@ class GraspScenario(TypedDict, total=False):
     """(x, y, radius) [m], or None without an obstacle."""
 
 
+@overload
+def scenarios(
+    protocol: ReachProtocol,
+    n: int | None = None,
+    seed: int = 0,
+    *,
+    split: str = "test",
+    config: ConfigLike = "paper",
+    threads: int = 1,
+) -> list[Scenario]: ...
+
+
+@overload
+def scenarios(
+    protocol: GraspProtocol,
+    n: int | None = None,
+    seed: int = 0,
+    *,
+    split: str = "test",
+    config: ConfigLike = "paper",
+    threads: int = 1,
+) -> list[GraspScenario]: ...
+
+
+@overload
 def scenarios(
     protocol: str,
     n: int | None = None,
@@ -67,7 +107,18 @@ def scenarios(
     split: str = "test",
     config: ConfigLike = "paper",
     threads: int = 1,
-) -> list[Any]:
+) -> list[Scenario] | list[GraspScenario]: ...
+
+
+def scenarios(
+    protocol: str,
+    n: int | None = None,
+    seed: int = 0,
+    *,
+    split: str = "test",
+    config: ConfigLike = "paper",
+    threads: int = 1,
+) -> Any:
     """The cases of a protocol, for `reset(options={"scenario": case})`.
 
     Args:

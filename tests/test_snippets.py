@@ -1,0 +1,73 @@
+"""The Python of README and docs runs, and the commands in them exist."""
+
+import re
+import shlex
+import warnings
+
+import pytest
+
+from gym_babble.cli import main
+
+FENCED = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+PAGES = ("README.md", *(f"docs/{name}.md" for name in ("baselines", "environments", "export")))
+
+
+def blocks(repository, page, *languages):
+    """The code blocks of a page that are in one of the languages."""
+    text = (repository / page).read_text(encoding="utf-8")
+    return [code for language, code in FENCED.findall(text) if language in languages]
+
+
+def small(code):
+    """The code with thousands of movements, babbles or steps turned into tens."""
+    return re.sub(r"\b(\d+)_000\b", r"\g<1>0", code)
+
+
+def test_every_page_with_python_is_run(repository):
+    pages = [repository / "README.md", *(repository / "docs").glob("*.md")]
+    found = [str(path.relative_to(repository)) for path in pages]
+    assert {page for page in found if blocks(repository, page, "python")} == {*PAGES}
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_the_python_of_a_page_runs(repository, page, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    for config in blocks(repository, page, "toml"):
+        name = re.match(r"# (\S+): ", config)[1]
+        (tmp_path / name).write_text(config, encoding="utf-8")
+    names = {"__name__": "snippet"}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for code in blocks(repository, page, "python"):
+            exec(compile(small(code), page, "exec"), names)  # noqa: S102 - our own docs
+
+
+def shell_lines(repository):
+    """The commands in the docs' shell blocks and in inline code, comments cut off."""
+    pages = [*repository.glob("*.md"), *(repository / "docs").glob("*.md")]
+    for path in pages:
+        page = str(path.relative_to(repository))
+        for code in blocks(repository, page, "sh", "console"):
+            for line in code.replace("\\\n", " ").splitlines():
+                yield page, line.split(" #")[0].strip()
+        text = FENCED.sub("", path.read_text(encoding="utf-8"))
+        yield from ((page, line) for line in re.findall(r"`((?:gym-babble|make) [^`|]+)`", text))
+
+
+def test_the_docs_commands_are_those_of_the_command_line(repository, capsys):
+    lines = {line for _, line in shell_lines(repository) if line.startswith("gym-babble ")}
+    assert len(lines) > 10
+    for line in lines:
+        words = [word for word in shlex.split(line)[1:] if word != "…"]
+        with pytest.raises(SystemExit) as ended:
+            main([*words, "--help"])
+        assert ended.value.code == 0, (line, capsys.readouterr().err)
+
+
+def test_the_docs_targets_are_the_makefiles(repository):
+    makefile = (repository / "Makefile").read_text(encoding="utf-8")
+    known = set(re.findall(r"^([a-z-]+):", makefile, re.MULTILINE))
+    named = [shlex.split(line) for _, line in shell_lines(repository) if line.startswith("make")]
+    targets = {word for _, *words in named for word in words if re.fullmatch(r"[a-z-]+", word)}
+    assert len(targets) > 5
+    assert targets <= known

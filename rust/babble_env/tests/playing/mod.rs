@@ -1,6 +1,7 @@
 //! Tasks, batches and random actions that the tests share.
 #![allow(dead_code, reason = "no test needs all of it")]
 
+pub(crate) mod golden;
 pub(crate) mod grasping;
 
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-"""The rows: what is measured, under which virtual environment, and what the docs call it."""
+"""The rows: measurement, virtual environment, and label in the docs."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ BATCHES = (1, 4, 16, 64, 256, 1024, 4096)
 THREADS = (1, 2)
 LARGE_BATCHES = BATCHES[-2:]
 DIAMETER_M = 0.05
-"""Of the object in the rows of physics, as in rust/babble_env/benches/physics.rs."""
+"""Diameter of the object in the physics rows, as in rust/babble_env/benches/physics.rs."""
 OURS, RUST = "ours", "rust"
 """The project's own virtual environment, and its Rust."""
 
@@ -32,9 +32,9 @@ class Case:
     """`module:function` of this package; in Rust, the crate and its benchmark."""
     arguments: dict[str, Any] = field(default_factory=dict)
     step_ms: float | None = None
-    """Time that one step simulates, where the unit is a step of an environment [ms]."""
+    """Simulated time of a step, if the unit is a step of an environment [ms]."""
     physics_steps: int | None = None
-    """Physics steps in it."""
+    """Physics steps in one step."""
 
 
 def peers() -> Iterator[Case]:
@@ -78,7 +78,7 @@ def peers() -> Iterator[Case]:
 
 
 def environments() -> Iterator[Case]:
-    """Our own, single and in batches."""
+    """Our environments, single and in batches."""
     for name, title, single, batch, arguments in (
         ("reach", "`BabbleReach-v0`", "single", "batch", {"env_id": "BabbleReach-v0"}),
         ("grasp", "`BabbleGrasp-v0`, random play", "single", "batch", {"env_id": "BabbleGrasp-v0"}),
@@ -132,7 +132,7 @@ def others() -> Iterator[Case]:
 
 
 def core() -> Iterator[Case]:
-    """Pictures in Rust alone, by criterion, which knows the clock only."""
+    """Pictures in Rust, measured by criterion, which has only clock time."""
     for name, row, label in (
         ("fovea-beside", "foveal shape, hand beside", "the fovea's edges, hand beside the object"),
         ("fovea-over", "foveal shape, hand over", "the fovea's edges, hand over the object"),

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 Row = dict[str, float]
-"""What a case measured, by name."""
+"""The results of a case, by name."""
 
 WARM_UP_S = 0.2
 
@@ -23,16 +23,16 @@ def spin(
     restart: Callable[[], object] | None = None,
     calls: int = 1_000_000_000,
 ) -> Row:
-    """CPU and clock time of one unit [µs], over some seconds after a warm-up.
+    """CPU and clock time of one unit [µs], measured after a warm-up.
 
     CPU time is that of the process and all of its threads.
 
     Args:
-        body: What is timed, a few microseconds long or more, so that looking at the clock is
-            nothing beside it.
-        units: How many units one call of it does.
-        seconds: How long to measure, at least one call.
-        restart: Called before every `calls` calls, outside of the time.
+        body: Code to time. It must take a few microseconds or more, much longer than reading the
+            clock.
+        units: Units of work in one call.
+        seconds: Duration of the measurement; at least one call is made.
+        restart: Called before every `calls` calls, outside the measured time.
         calls: See `restart`.
     """
     _span(body, WARM_UP_S, restart, calls)
@@ -47,7 +47,7 @@ def spin(
 def _span(
     body: Callable[[], object], seconds: float, restart: Callable[[], object] | None, calls: int
 ) -> tuple[int, float, float]:
-    """Calls made, clock and CPU seconds, of at most `calls` calls begun within some seconds."""
+    """Number of calls, clock and CPU seconds, of at most `calls` calls within some seconds."""
     if restart is not None:
         restart()
     done, cpu, now = 0, time.process_time(), time.perf_counter()
@@ -60,7 +60,7 @@ def _span(
 
 
 def memory_kib() -> float:
-    """Memory of this process [KiB], its share of shared pages counted (PSS).
+    """Memory of this process [KiB], with its part of shared pages (PSS).
 
     Raises:
         OSError: The system is not Linux.

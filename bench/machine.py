@@ -1,4 +1,4 @@
-"""The virtual environments of the peers, and what a run was measured on."""
+"""The virtual environments of the peers, and the machine of a run."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PACKAGES = {
     "envpool": ("envpool",),
     "myo": ("MyoSuite", "mujoco"),
 }
-"""Packages worth naming, by virtual environment."""
+"""Packages that a report names, by virtual environment."""
 VERSIONS = (
     "import sys, json, importlib.metadata as m;"
     "print(json.dumps({name: m.version(name) for name in sys.argv[1:]}))"
@@ -29,10 +29,10 @@ VERSIONS = (
 
 
 def install(venv: str, python: str) -> None:
-    """Makes the virtual environment of a peer as its requirements say, unless it is there.
+    """Creates the virtual environment of a peer from its requirements, unless it exists.
 
     Raises:
-        FileNotFoundError: There is no such Python.
+        FileNotFoundError: The Python is not installed.
         CalledProcessError: pip failed.
     """
     wanted = (ROOT / "bench" / f"requirements-{venv}.txt").read_text(encoding="utf-8")
@@ -54,7 +54,7 @@ def install(venv: str, python: str) -> None:
 
 
 def describe() -> dict[str, Any]:
-    """Processor, system and versions; nothing that names the machine or its user."""
+    """Processor, system and versions, but neither the machine's nor the user's name."""
     return {
         "date": time.strftime("%Y-%m-%d"),
         "cpu": _processor(),

@@ -1,4 +1,4 @@
-"""What is measured of this package's own environments."""
+"""Measurements of this package's environments."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from bench.clock import Row
 
 POOL = 32
-"""Episodes that larger batches hold copies of."""
+"""Number of different episodes; larger batches contain copies of them."""
 EPISODE_STEPS = 240
 ACTIONS = 32
-"""Random actions that are played in turn."""
+"""Number of random actions, used in turn."""
 
 HOLDING: dict[str, Any] = {
     "obs": "goal",  # These episodes go on when the object is held.
@@ -37,18 +37,18 @@ HOLDING: dict[str, Any] = {
 HELD_STEPS = 40
 """Steps between restarts from the held states: two seconds."""
 TARGET_STEPS = 10
-"""Steps that the arm is given for each random posture."""
+"""Steps for each random posture of the arm."""
 
 
 def single(seconds: float, *, env_id: str) -> Row:
-    """A step through `gymnasium.make`, random actions, resets inside of the time."""
+    """A step with `gymnasium.make`, random actions, resets included."""
     return spin_single(gymnasium.make(env_id), seconds)
 
 
 def batch(seconds: float, *, env_id: str, n: int, threads: int) -> Row:
-    """A step of one environment of a batch, random actions, autoresets inside of the time.
+    """A step of one environment of a batch, random actions, autoresets included.
 
-    The episodes are of all ages, as in a batch that has played for long.
+    The episodes differ in age, as in a batch that has run for a long time.
     """
     envs: Any = gymnasium.make_vec(env_id, num_envs=n, threads=threads)
     envs.reset(seed=0)
@@ -79,16 +79,16 @@ def playing(env_id: str) -> list[bytes]:
 
 
 def copies(states: Sequence[bytes], n: int) -> list[bytes]:
-    """The states over and over."""
+    """The states, repeated as often as needed."""
     return [states[i % len(states)] for i in range(n)]
 
 
 @cache
 def held() -> tuple[list[bytes], NDArray[np.float32]]:
-    """States with the object held, and actions (steps, states, 4) through which it stays held.
+    """States with the object held, and actions (steps, states, 4) that keep it held.
 
-    The hand stays closed, the arm moves from one random posture to the next. The same state and
-    actions give the same bits, so an object that was held once is held at every repetition.
+    The hand stays closed while the arm moves from one random posture to the next. The same state
+    and actions give the same bits, so every repetition holds the object too.
     """
     envs = BabbleGraspVectorEnv(POOL, **HOLDING)
     observation, info = envs.reset(seed=0)
@@ -109,7 +109,7 @@ def held() -> tuple[list[bytes], NDArray[np.float32]]:
 
 
 def held_single(seconds: float) -> Row:
-    """A step through `gymnasium.make` with the object held."""
+    """A step with `gymnasium.make` with the object held."""
     spec = EnvSpec(
         "BabbleGraspHeld-v0", entry_point="gym_babble.envs:BabbleGraspEnv", kwargs=HOLDING
     )
@@ -143,7 +143,7 @@ def held_batch(seconds: float, *, n: int, threads: int) -> Row:
 
 
 def reset(seconds: float, *, env_id: str) -> Row:
-    """A reset with a given case, through `gymnasium.make`."""
+    """A reset with a given case, with `gymnasium.make`."""
     env: Any = gymnasium.make(env_id)
     env.reset(seed=0)
     options = {"scenario": env.unwrapped.scenario}
@@ -163,7 +163,7 @@ def picture(seconds: float, *, env_id: str, camera: str, pixels: int) -> Row:
 
 
 def memory(seconds: float, *, env_id: str, n: int) -> Row:
-    """Growth of memory by a batch and its first steps, an environment's share [KiB]."""
+    """Memory of a batch after its first steps, for each environment [KiB]."""
     del seconds
     states = playing(env_id)
     random = np.random.default_rng(0)
@@ -177,7 +177,7 @@ def memory(seconds: float, *, env_id: str, n: int) -> Row:
 
 
 def memory_held(seconds: float, *, n: int) -> Row:
-    """The same with every hand holding its object."""
+    """Memory of a batch in which every hand holds its object, for each environment [KiB]."""
     del seconds
     states, moves = held()
     before = memory_kib()

@@ -1,6 +1,6 @@
-"""What is measured of other packages, and of environments that do nothing.
+"""Measurements of other packages, and of environments that do nothing.
 
-Imported under each package's virtual environment, all of which have Gymnasium.
+It is imported in each package's virtual environment, all of which have Gymnasium.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ if TYPE_CHECKING:
     from bench.clock import Row
 
 STEPS = 64
-"""Random actions that are played in turn, and steps between looks at the clock."""
+"""Number of random actions, used in turn, and of steps between readings of the clock."""
 SENSES = spaces.Box(-1.0, 1.0, (64,), np.float32)
 ACTION = spaces.Box(-1.0, 1.0, (2,), np.float32)
 
 
 def single(seconds: float, *, env_id: str, package: str) -> Row:
-    """A step through `gymnasium.make`, random actions, resets inside of the time."""
+    """A step with `gymnasium.make`, random actions, resets included."""
     importlib.import_module(package)  # It registers the id.
     return spin_single(gymnasium.make(env_id), seconds)
 
 
 def spin_single(env: Any, seconds: float) -> Row:
-    """The same of any single environment."""
+    """A step of any single environment, random actions, resets included."""
     env.reset(seed=0)
     env.action_space.seed(0)
     actions = [env.action_space.sample() for _ in range(STEPS)]
@@ -47,7 +47,7 @@ def spin_single(env: Any, seconds: float) -> Row:
 
 
 def envpool(seconds: float, *, env_id: str, n: int, threads: int) -> Row:
-    """A step of one environment of EnvPool's batch, random actions, autoresets in the time."""
+    """A step of one environment of EnvPool's batch, random actions, autoresets included."""
     pool = importlib.import_module("envpool")
     envs = pool.make(env_id, env_type="gymnasium", num_envs=n, num_threads=threads, seed=0)
     envs.reset()
@@ -58,7 +58,7 @@ def envpool(seconds: float, *, env_id: str, n: int, threads: int) -> Row:
 
 
 class Nothing(gymnasium.Env[Any, Any]):
-    """A single environment that makes an observation's array, and nothing else."""
+    """A single environment that only creates the observation's array."""
 
     observation_space = SENSES
     action_space = ACTION
@@ -66,35 +66,35 @@ class Nothing(gymnasium.Env[Any, Any]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Makes the array."""
+        """Creates the array."""
         del seed, options
         return np.zeros(SENSES.shape, np.float32), {}
 
     def step(self, _: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        """Makes the array."""
+        """Creates the array."""
         return np.zeros(SENSES.shape, np.float32), 0.0, False, False, {}
 
 
 def floor_single(seconds: float) -> Row:
-    """What Gymnasium's own API costs."""
+    """Cost of Gymnasium's own API."""
     return spin_single(gymnasium.make(EnvSpec("Nothing-v0", "bench.peers:Nothing")), seconds)
 
 
 class Nothings(gymnasium.vector.VectorEnv[Any, Any, Any]):
-    """A batch that makes the arrays of a step, and nothing else."""
+    """A batch that only creates the arrays of a step."""
 
     def __init__(self, n: int) -> None:
         self.num_envs = n
 
     def step(self, _: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
-        """Makes the arrays."""
+        """Creates the arrays."""
         n = self.num_envs
         ends = np.zeros(n, np.bool_), np.zeros(n, np.bool_)
         return np.zeros((n, *SENSES.shape), np.float32), np.zeros(n), *ends, {}
 
 
 def floor_batch(seconds: float, *, n: int) -> Row:
-    """What any batch with new arrays costs at least."""
+    """Lower bound of any batch that returns new arrays."""
     envs, actions = Nothings(n), np.zeros((n, *ACTION.shape), np.float32)
 
     def steps() -> None:

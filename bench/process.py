@@ -1,4 +1,4 @@
-"""Runs one case in a process of its own."""
+"""Runs one case in its own process."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ class CaseError(RuntimeError):
 
 
 def interpreter(venv: str) -> str:
-    """The Python that a case runs under."""
+    """The Python of a case."""
     return sys.executable if venv == OURS else str(VENVS / venv / "bin" / "python")
 
 
 def measure(case: Case, seconds: float) -> Row:
-    """What the case measures, by name.
+    """Measures a case and returns its results by name.
 
     Raises:
-        CaseError: It failed, took too long or printed no result.
+        CaseError: The case failed, took too long or printed no result.
     """
     if case.venv != RUST:
         job = {"function": case.function, "arguments": case.arguments, "seconds": seconds}
@@ -77,7 +77,7 @@ def _output(command: list[str], given: str | None = None, folder: str | Path = R
 
 
 def _last_json(printed: str) -> Row:
-    """The last line: some libraries print lines of their own before it."""
+    """The last line, because some libraries print their own lines before it."""
     try:
         row: Any = json.loads(printed.strip().rpartition("\n")[2])
     except json.JSONDecodeError as error:

@@ -1,4 +1,4 @@
-"""The docs' tables from bench/results.json: `python -m bench.report` writes them anew."""
+"""The docs' tables from bench/results.json; `python -m bench.report` rewrites them."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ NOT_MEASURED = "–"
 
 @dataclass(frozen=True)
 class Mark:
-    """What a row, or several, is to reach."""
+    """A target for one or several rows."""
 
     text: str
     ours: tuple[str, ...]
-    """The rows, the worst of which counts."""
+    """The rows; the worst one counts."""
     bound: float
     unit: str
     key: str = "cpu_us"
     peer: str | None = None
-    """The row that ours is to be `bound` times cheaper than; without it ours is to be `bound` at
-    most."""
+    """The peer than which ours must be `bound` times cheaper; without a peer, ours must be at most
+    `bound`."""
     scale: float = 1.0
-    """From the row's unit to the mark's."""
+    """Factor from the row's unit to the mark's unit."""
 
     def measured(self, rows: Mapping[str, Any]) -> float | None:
-        """What is compared with the bound; None if a row is missing."""
+        """The value to compare with the bound; None if a row is missing."""
         needed = (*self.ours, *([self.peer] if self.peer else []))
         if not all(name in rows for name in needed):
             return None
@@ -45,12 +45,12 @@ class Mark:
         return found
 
     def met(self, measured: float) -> bool:
-        """Whether that is enough."""
+        """Whether the value meets the bound."""
         return measured >= self.bound if self.peer else measured <= self.bound
 
 
 def cheaper(text: str, ours: str, bound: float, peer: str) -> Mark:
-    """A mark beside a peer."""
+    """A target relative to a peer."""
     return Mark(text, (ours,), bound, "×", peer=peer)
 
 
@@ -97,7 +97,7 @@ MARKS = (
 
 
 def number(value: float | None) -> str:
-    """Three digits."""
+    """The value with three digits."""
     if value is None:
         return NOT_MEASURED
     if value >= 100:
@@ -106,13 +106,13 @@ def number(value: float | None) -> str:
 
 
 def markdown(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table."""
+    """A Markdown table."""
     lines = [heads, ["---"] * len(heads), *rows]
     return "".join(f"| {' | '.join(cells)} |\n" for cells in lines)
 
 
 def marks(results: Results) -> str:
-    """What was aimed at, and what came out."""
+    """The targets and the results."""
     rows = []
     for mark in MARKS:
         found = mark.measured(results["rows"])
@@ -124,7 +124,7 @@ def marks(results: Results) -> str:
 
 
 def machine(results: Results) -> str:
-    """What it was measured on."""
+    """The machine of the run."""
     about = results["about"]
     versions = about["versions"]
     peers = ", ".join(
@@ -160,7 +160,7 @@ PEERS = (
 
 
 def peers(results: Results) -> str:
-    """Ours and theirs."""
+    """Our environments and the peers'."""
     rows = []
     for name in PEERS:
         case, row = CASES[name], results["rows"].get(name, {})
@@ -245,11 +245,11 @@ def speed(results: Results) -> str:
 BLOCKS: dict[str, Callable[[Results], str]] = {
     block.__name__: block for block in (marks, machine, peers, batches, physics, others, speed)
 }
-"""What stands between `<!-- bench: NAME -->` and `<!-- end -->` in the pages."""
+"""The blocks between `<!-- bench: NAME -->` and `<!-- end -->` in the pages."""
 
 
 def filled(page: str, results: Results) -> str:
-    """The page with its blocks from the results."""
+    """The page with its blocks made from the results."""
     return BLOCK.sub(lambda found: found[1] + BLOCKS[found[2]](results) + found[3], page)
 
 

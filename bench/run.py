@@ -1,8 +1,7 @@
-"""Measures all rows in rounds, and makes the docs' tables and picture of them: `make bench`.
+"""Measures all rows in rounds, and makes the docs' tables and picture from them: `make bench`.
 
-Each row runs in a process of its own. Rounds are interleaved, every row once and then every row
-again, so that a slow minute of the machine falls on all rows and not on one; what counts is the
-median of a row's rounds.
+Each row runs in its own process. Rounds are interleaved, every row once and then every row again,
+so that a slow minute of the machine affects all rows. The result is the median of a row's rounds.
 """
 
 from __future__ import annotations
@@ -39,20 +38,20 @@ if TYPE_CHECKING:
 
 RESULTS = ROOT / "bench" / "results.json"
 PART = VENVS / "part.json"
-"""What a run of some rows alone measured."""
+"""Results of a run of selected rows."""
 SAMPLES = VENVS / "samples.jsonl"
-"""What the last run has measured so far."""
+"""Measurements of the last run so far."""
 OVERHEAD_S = 1.6
-"""What starting a process and preparing its row takes on average."""
+"""Average time to start a process and prepare its row."""
 QUIET_LOAD = 0.5
 
 console = Console(stderr=True)
 
 
 class Samples:
-    """What was measured, kept in a file from which an interrupted run goes on.
+    """The measurements of a run, in a file from which an interrupted run can continue.
 
-    Its first line says which run it is of, each other one is a measurement. What failed is measured
+    The first line describes the run; each other line is a measurement. Failed rows are measured
     again.
     """
 
@@ -71,7 +70,7 @@ class Samples:
             SAMPLES.write_text(json.dumps(run) + "\n", encoding="utf-8")
 
     def add(self, turn: int, name: str, row: Row | None, error: str | None) -> None:
-        """Takes and keeps a measurement."""
+        """Adds a measurement and writes it to the file."""
         sample = {"turn": turn, "name": name, "row": row, "error": error}
         self._take(sample)
         with SAMPLES.open("a", encoding="utf-8") as file:
@@ -87,7 +86,7 @@ class Samples:
         self.rows.setdefault(sample["name"], []).append(sample["row"])
 
     def medians(self) -> dict[str, dict[str, Any]]:
-        """Of each row the medians, and the CPU or other first figure of every round."""
+        """The medians of each row, and the first figure of each of its rounds."""
         return {name: _median(self.rows[name]) for name in CASES if name in self.rows}
 
 
@@ -114,7 +113,7 @@ def prepare(cases: Sequence[Case], python: str) -> None:
 
 
 def play(cases: Sequence[Case], seconds: float, rounds: int, samples: Samples) -> None:
-    """Measures every case once a round."""
+    """Measures every case once in each round."""
     left = [
         (turn, case)
         for turn in range(rounds)
@@ -170,7 +169,7 @@ def arguments() -> argparse.Namespace:
 
 
 def finish(samples: Samples, run: dict[str, Any], *, whole: bool) -> int:
-    """Writes what was measured; of a whole run the docs too."""
+    """Writes the results; after a whole run, the docs too."""
     rows = samples.medians()
     results = {"about": machine.describe() | run if whole else run, "rows": rows}
     text = json.dumps(results, indent=1, ensure_ascii=False) + "\n"
@@ -187,7 +186,7 @@ def finish(samples: Samples, run: dict[str, Any], *, whole: bool) -> int:
 
 
 def main() -> int:
-    """Measures all rows, or those asked for, and writes what came out."""
+    """Measures all or the selected rows, and writes the results."""
     given = arguments()
     cases = [case for case in CASES.values() if re.search(given.only, case.name)]
     names = [case.name for case in cases]

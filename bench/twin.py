@@ -1,8 +1,7 @@
-"""MuJoCo's physics step on the robot that grasps; imported under MuJoCo's virtual environment.
+"""MuJoCo's physics step on the grasping robot; imported in MuJoCo's virtual environment.
 
-The robot is this package's export: docs/export.md says what differs.
-
-rust/babble_env/benches/physics.rs does the same with this package's own.
+The robot is this package's export; docs/export.md lists the differences.
+rust/babble_env/benches/physics.rs measures the same with this package's engines.
 """
 
 from __future__ import annotations
@@ -22,15 +21,15 @@ TARGETS = {
     "fingers": (0.0, 1.57),
     "thumb": (0.0, 1.57),
 }
-"""Where random equilibrium points are [rad]."""
+"""Range of the random equilibrium points [rad]."""
 TARGET_S = 0.5
-"""Time between two of them."""
+"""Time between two equilibrium points."""
 BLOCK_TARGETS = 20
-"""Targets until the motion begins anew from the same state: ten seconds."""
+"""Equilibrium points before the motion restarts from the same state: ten seconds."""
 CLOSING_S, SETTLING_S = 3.0, 0.5
-"""Time that the hand closes on the object, and that it then holds it before the clock starts."""
+"""Time for closing the hand, and for holding the object before the clock starts."""
 SLIP_M = 0.02
-"""An object further than this from its place in the hand has been dropped."""
+"""Beyond this distance from its place in the hand, an object counts as dropped."""
 
 
 def physics(
@@ -39,11 +38,11 @@ def physics(
     """CPU time of one physics step, of a hand that holds an object or of a free one.
 
     Args:
-        seconds: How long to measure.
+        seconds: Duration of the measurement.
         model: The robot, the object and its support as MJCF, the arm straight along x.
-        place: Where the object lies (x, y) [m].
-        reflex: Flexions of fingers and thumb that hold the object [rad]; the hand moves freely if
-            there are none.
+        place: Position of the object (x, y) [m].
+        reflex: Flexions of fingers and thumb that hold the object [rad]; without
+            them the hand moves freely.
 
     Raises:
         RuntimeError: The object was dropped.
@@ -84,14 +83,14 @@ class Twin:
         self._palm = model.jnt_bodyid[model.joint("elbow").id]
 
     def state(self) -> Any:
-        """All that a step depends on."""
+        """Everything that a step depends on."""
         kind = mujoco.mjtState.mjSTATE_INTEGRATION
         state = np.empty(mujoco.mj_stateSize(self._model, kind))
         mujoco.mj_getState(self._model, self._data, state, kind)
         return state
 
     def restore(self, state: Any) -> None:
-        """Continues from there."""
+        """Restores such a state."""
         kind = mujoco.mjtState.mjSTATE_INTEGRATION
         mujoco.mj_setState(self._model, self._data, state, kind)
 
@@ -101,13 +100,13 @@ class Twin:
             self._data.ctrl[self._muscles[name]] = self._random.uniform(*TARGETS[name])
 
     def step(self, seconds: float) -> int:
-        """Steps for some time; returns the number of steps."""
+        """Steps for some time and returns the number of steps."""
         steps: int = round(seconds / self._model.opt.timestep)
         mujoco.mj_step(self._model, self._data, nstep=steps)
         return steps
 
     def grasp(self, reflex: dict[str, float]) -> None:
-        """Closes the hand on the object before it and takes the support away."""
+        """Closes the hand on the object and removes the support."""
         for name, flexion in reflex.items():
             self._data.ctrl[self._muscles[name]] = flexion
         self.step(CLOSING_S)

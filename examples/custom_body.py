@@ -1,7 +1,7 @@
-"""Change one number of the body and read what it does to babbling and reaching.
+"""Change one number of the body and see its effect on babbling and reaching.
 
-How much does the muscles' damping K_D matter, and with it their lag K_D/K_P? Every number of
-`gym_babble.Config` can be changed like this, or in a TOML file.
+How much does the muscles' damping K_D matter, and with it their lag K_D/K_P? You can change every
+number of `gym_babble.Config` like this, or in a TOML file.
 """
 
 import argparse

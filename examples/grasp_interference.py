@@ -1,8 +1,8 @@
-"""Do two sizes interfere, in where the arm goes and in how the hand closes?
+"""Do two sizes interfere, in the arm's target and in the hand's posture?
 
-An agent babbles with small objects alone, with big ones alone, or with both, and recalls postures
-for cases of each size: how far the palm's surface stays from the object's (negative: inside), and
-the hand's equilibrium points. docs/grasping.md has what comes out.
+An agent babbles with small objects alone, with big ones alone, or with both. Then it recalls
+postures for cases of each size. The table shows the gap from the palm's surface to the object's
+(negative: inside), and the hand's equilibrium points. docs/grasping.md has the results.
 """
 
 import argparse

@@ -1,7 +1,7 @@
 """From which side must the hand come?
 
 An agent that knows the arm's geometry goes straight to the object and closes. Its success depends
-on where the shoulder starts relative to the object: docs/grasping.md has what comes out.
+on the shoulder's start relative to the object. docs/grasping.md has the results.
 """
 
 import argparse

@@ -1,7 +1,7 @@
 """Which objects can this hand hold, and which can the fovea tell apart?
 
-The paper prints diameters of 30 and 12 cm. The reflex closes on spheres of many sizes, and the eye
-looks at them; docs/grasping.md has what comes out.
+The paper prints diameters of 30 and 12 cm. Here the reflex closes on spheres of many sizes, and the
+eye looks at them. docs/grasping.md has the results.
 """
 
 import argparse
@@ -13,7 +13,7 @@ from gym_babble.envs import BabbleGraspEnv
 from gym_babble.paper.holding import hold_rates
 
 parser = argparse.ArgumentParser(description=__doc__)
-parser.add_argument("--trials", type=int, default=100, help="trials of holding, of each size")
+parser.add_argument("--trials", type=int, default=100, help="trials of holding for each size")
 parser.add_argument(
     "--diameters", type=float, nargs="+", default=[1.5, 2, 2.4, 3, 4, 5, 6, 7, 8, 9, 10, 12]
 )

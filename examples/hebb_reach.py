@@ -1,6 +1,6 @@
 """Babble, learn, reach: the paper's agent (Caligiore et al. 2008) in a dozen lines.
 
-python examples/hebb_reach.py            # 20,000 legal movements: the paper's test, some 15 s
+python examples/hebb_reach.py            # 20,000 legal movements: the paper's test, about 15 s
 """
 
 import argparse

@@ -1,13 +1,12 @@
 """The study behind docs/baselines.md: a task's PPO presets, several seeds, tested on its cases.
 
-Writes ppo_reach.json or ppo_grasp.json, the runs one a line, and their learning curves as a
-picture, and prints a table. Seconds are clock time of learning; processor seconds include
-validation.
+Writes ppo_reach.json or ppo_grasp.json (one run a line) and a picture of the learning curves, and
+prints a table. Seconds are clock time of learning; processor seconds include validation.
 
 python examples/ppo_study.py --out docs/studies              # the presets' own steps
 python examples/ppo_study.py --out docs/studies --long 3     # and 4 or 3 times as many
 
-What `gym-babble compare --task grasp` shows without training comes from
+`gym-babble compare --task grasp` shows the results of this command without training:
 
 python examples/ppo_study.py --task grasp --seeds 3 --out gym_babble/study/results \
     --pictures docs/studies

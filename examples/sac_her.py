@@ -1,12 +1,13 @@
 """SAC with hindsight experience replay on the goal form of reaching (stable-baselines3).
 
-The reward says only whether the fingertip is at the target (0) or not (-1). Hindsight pretends that
-the place which was reached had been the target: `compute_reward` judges it anew.
+The reward only says whether the fingertip is at the target (0) or not (-1). Hindsight replay
+treats the place that was reached as the target, and `compute_reward` computes the new reward.
 
-Without the obstacle, which stands on the straight way to every target: with it, hindsight learns
-to reach straight into it and needs far more than these steps (--obstacle; see docs/baselines.md).
+There is no obstacle by default. An obstacle stands on the straight path to every target; with it
+(--obstacle), hindsight learns to reach straight into it and needs far more steps than these. See
+docs/baselines.md.
 
-python examples/sac_her.py               # 100,000 steps: some 8 minutes on one core
+python examples/sac_her.py               # 100,000 steps: about 8 minutes on one core
 """
 
 import argparse

@@ -1,7 +1,7 @@
-"""Which of the numbers that the paper leaves open decide Table I?
+"""Which of the numbers missing in the paper decide Table I?
 
-One number at a time is changed, an agent babbles and is tested on cases of the validation split.
-docs/model.md has what comes out.
+For each change of one number, an agent babbles and is tested on cases of the validation split.
+docs/model.md has the results.
 """
 
 import argparse

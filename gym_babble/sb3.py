@@ -182,7 +182,9 @@ class BabbleVecEnv(VecEnv):
 
     def _of_one(self, i: int, name: str) -> Any:
         if name in ("reset", "step"):
-            raise AttributeError(f"{name}: single environments cannot {name}; use that of the batch")
+            raise AttributeError(
+                f"{name}: single environments cannot {name}; use that of the batch"
+            )
         return self.envs.of_one(i, name)
 
 

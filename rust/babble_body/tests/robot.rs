@@ -72,7 +72,7 @@ fn the_hand_closes_with_its_time_constant() {
 }
 
 /// The shoulder's base is fixed: as many degrees of freedom as joints, and all stay where they are
-/// without a drive. Catches a root with six joints of its own, and gravity on the arm.
+/// at their equilibrium points. Catches a root with six joints of its own.
 #[test]
 fn nothing_moves_by_itself() {
     for robot in all_robots() {

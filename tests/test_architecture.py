@@ -36,8 +36,19 @@ OWNERS = {
 
 # What steps, shows and stores any task, and the words that belong to one of them.
 SHARED = {
-    "rust/babble_env/src": ("batch", "outcome", "picture", "pool", "snapshot", "spec", "task"),
-    "gym_babble/envs": ("choices", "one", "single", "vector", "window"),
+    "rust/babble_env/src": (
+        "batch",
+        "case",
+        "erased",
+        "option_spec",
+        "outcome",
+        "picture",
+        "executor",
+        "snapshot",
+        "spec",
+        "task",
+    ),
+    "gym_babble/envs": ("interface", "member", "registry", "single", "vector", "window"),
 }
 OF_ONE_TASK = re.compile(
     r"(?i)\w*(reach|grasp)\w*|\b(is|ever)_success\b|\b(obstacle|target|control|b1)\b"

@@ -9,10 +9,10 @@ import typer
 from rich.table import Table
 
 from gym_babble.cli.arguments import AsJson, ConfigName
+from gym_babble.cli.list import described
 from gym_babble.cli.output import print_json, print_results
-from gym_babble.envs.registration import ENVIRONMENTS
+from gym_babble.envs import registry
 from gym_babble.study.tables import plain_table
-from gym_babble.study.tasks import task_of
 
 __all__ = ["info"]
 
@@ -23,13 +23,12 @@ def info(
     as_json: AsJson = False,
 ) -> None:
     """Show an environment: senses, action, reward terms, limits."""
-    task_of(env_id)
-    row = next(row for row in ENVIRONMENTS if row.id == env_id)
+    row = registry.environment(env_id)
     env: Any = gymnasium.make(env_id, config=config)
-    spec = env.unwrapped.choices.spec
-    goals = list(spec.goals) if row.obs == "goal" else []
-    described = {
-        **asdict(row),
+    spec = env.unwrapped.interface.spec
+    goals = list(spec.goals) if row.options["obs"] == "goal" else []
+    shown = {
+        **described(row),
         "observation_space": str(env.observation_space),
         "action_space": str(env.action_space),
         "senses": [asdict(entry) for entry in (*spec.senses, *goals)],
@@ -40,9 +39,9 @@ def info(
         "control_hz": spec.control_hz,
     }
     if as_json:
-        print_json(described)
+        print_json(shown)
     else:
-        print_results(*_tables(described))
+        print_results(*_tables(shown))
 
 
 def _tables(described: dict[str, Any]) -> list[Table]:

@@ -25,7 +25,7 @@ EXTENSION_SOURCES := Cargo.toml Cargo.lock $(shell find rust -type f -not -name 
 	$(foreach folder,$(NOT_IN_EXTENSION),-not -path '*/$(folder)/*'))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test slow soak fuzz lint lint-rust lint-python lint-workflows deny golden-native wasm \
+.PHONY: help setup demo test test-rust test-python slow soak fuzz lint lint-rust lint-python lint-workflows deny golden-native \
 	frameworks bench microbench constraints audit-export clean
 
 help: ## List the targets
@@ -37,8 +37,12 @@ demo: setup ## Compare the agents on both tasks and write figures and tables int
 	$(BIN)/gym-babble compare --report report --other-report grasp/index.html
 	$(BIN)/gym-babble compare --task grasp --report report/grasp --other-report ../index.html
 
-test: setup ## Run the Rust and the Python tests
+test: test-rust test-python ## Run the Rust and the Python tests
+
+test-rust:
 	cargo test
+
+test-python: setup
 	$(BIN)/python -m pytest
 
 slow: setup ## Run the slow tests (some minutes)

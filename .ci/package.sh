@@ -17,15 +17,16 @@ find "$packaging" -name '*.rs' -exec touch {} +
 )
 .venv/bin/python .ci/check_dist.py dist
 
-# Installed in empty environments, for every Python that we support and find here. The oldest libraries
-# that pyproject.toml admits have wheels up to Python 3.12; `make test` ran on the newest.
-oldest=--oldest
+# Installed in empty environments, for every Python that we support and find here: all tests of the
+# wheel with the oldest libraries that pyproject.toml admits, which have wheels up to Python 3.12, and
+# a few seconds of tests with the newest, with which `make test` ran.
+tests=--oldest
 untested=""
 for version in 3.10 3.11 3.12 3.13 3.14; do
     if python=$(python_of "$version"); then
-        [[ $version == 3.1[012] ]] || oldest=""
-        .venv/bin/python .ci/wheel_tests.py dist/*.whl --python "$python" $oldest
-        oldest=""
+        [[ $version == 3.1[012] ]] || tests=--smoke
+        .venv/bin/python .ci/wheel_tests.py dist/*.whl --python "$python" $tests
+        tests=--smoke
     else
         untested+=" $version"
     fi

@@ -4,10 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::arm::PlanarArm;
-use crate::error::{BodyError, within};
-use crate::joints::{self, Joints};
-use crate::skeleton;
+use crate::joints::Joints;
 use babble_eye::EyeConfig;
 
 /// The arm's two segments.
@@ -119,15 +116,41 @@ pub struct ContactModel {
     pub stiction_m_s: f64,
 }
 
-/// What steps arm, hand and object.
+/// The physics engine that steps arm, hand and object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[cfg_attr(not(feature = "rapier"), serde(try_from = "KnownEngine"))]
 pub enum EngineName {
     /// Made for this robot: a tree of joints about the vertical, in double precision.
     Tree,
     /// rapier3d with settings of its own for contacts: the reference, some ten times slower. Its bits
-    /// are those of one platform's maths library.
+    /// depend on the platform's maths library. Needs the cargo feature `rapier`.
+    #[cfg(feature = "rapier")]
     Rapier,
+}
+
+/// All engines that there are, so that a build without one can say so.
+#[cfg(not(feature = "rapier"))]
+#[derive(Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum KnownEngine {
+    Tree,
+    Rapier,
+}
+
+#[cfg(not(feature = "rapier"))]
+impl TryFrom<KnownEngine> for EngineName {
+    type Error = &'static str;
+
+    fn try_from(engine: KnownEngine) -> Result<Self, Self::Error> {
+        match engine {
+            KnownEngine::Tree => Ok(Self::Tree),
+            KnownEngine::Rapier => Err(
+                "engine `rapier` is not part of this build, which has `tree` alone: compile it with the \
+                 cargo feature `rapier`",
+            ),
+        }
+    }
 }
 
 /// The vertical cylinder in the way.
@@ -152,7 +175,7 @@ pub struct Target {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Body {
-    /// What steps the world in grasping; `tree` \[C\].
+    /// The physics engine of grasping; `tree` \[C\].
     pub engine: EngineName,
     /// Upper arm and forearm.
     pub arm: Arm,
@@ -174,190 +197,4 @@ pub struct Body {
     pub object: Object,
     /// How hard surfaces are.
     pub contact: ContactModel,
-}
-
-impl Body {
-    /// The body fitted to the paper's Table I: shoulder −75…180°, elbow 5…130° \[F\], camera in
-    /// Helmholtz coordinates \[F\].
-    #[must_use]
-    pub fn paper() -> Self {
-        Self {
-            engine: EngineName::Tree,
-            arm: Arm {
-                upper_arm_m: 0.15,
-                forearm_m: 0.13,
-                half_width_m: 0.01,
-                density_kg_m3: 1100.0,
-            },
-            hand: Hand {
-                palm_m: 0.055,
-                palm_height_m: 0.06,
-                finger_m: [0.01, 0.02, 0.017, 0.014],
-                thumb_m: [0.02, 0.02, 0.017, 0.014],
-                finger_spacing_m: 0.015,
-            },
-            joints: joints::reaching_joints([-75.0, 180.0], [5.0, 130.0]),
-            muscles: Muscles {
-                kp: 50.0,
-                kd: 40.0,
-                torque_max: 50.0,
-            },
-            eye: EyeConfig::helmholtz(),
-            obstacle: Cylinder {
-                radius_m: 0.035,
-                height_m: 0.12,
-            },
-            target: Target { radius_m: 0.012 },
-            grip: Grip {
-                fingers: Fingers::Virtual,
-                thumb_base_m: [0.0, 0.006],
-                thumb_direction_deg: 154.7,
-                flexion_deg: [0.0, 90.0],
-                reflex_deg: [57.0, 80.0],
-                arm_muscles: Muscles {
-                    kp: 200.0,
-                    kd: 200.0,
-                    torque_max: 200.0,
-                },
-                hand_muscles: Muscles {
-                    kp: 0.5,
-                    kd: 0.5,
-                    torque_max: 0.5,
-                },
-            },
-            object: Object {
-                density_kg_m3: 500.0,
-                friction: 0.8,
-                support_friction: 0.5,
-                linear_damping: 0.5,
-                angular_damping: 20.0,
-            },
-            contact: ContactModel {
-                stiffness_n_m: 20_000.0,
-                relaxation_s: 0.013,
-                stiction_m_s: 1e-4,
-            },
-        }
-    }
-
-    /// The iCub's joint ranges (shoulder −10…95°, elbow 15…106°), a pan-tilt head in Fick
-    /// coordinates and a thinner obstacle \[C\].
-    #[must_use]
-    pub fn icub() -> Self {
-        Self {
-            joints: joints::reaching_joints([-10.0, 95.0], [15.0, 106.0]),
-            eye: EyeConfig::fick(),
-            obstacle: Cylinder {
-                radius_m: 0.02,
-                height_m: 0.12,
-            },
-            ..Self::paper()
-        }
-    }
-
-    /// Checks every field and that the parts fit together.
-    ///
-    /// # Errors
-    /// A [`BodyError`] that names the field, its value and its bound.
-    pub fn validate(&self) -> Result<(), BodyError> {
-        self.validate_lengths()?;
-        within("arm.density_kg_m3", self.arm.density_kg_m3, 1.0, 1e5)?;
-        validate_muscles("muscles", &self.muscles)?;
-        self.validate_grasping()?;
-        joints::validate(&self.joints)?;
-        self.eye.validate()?;
-        skeleton::validate_plane(self)?;
-        PlanarArm::new(self).validate()
-    }
-
-    fn validate_grasping(&self) -> Result<(), BodyError> {
-        let Self {
-            grip,
-            object,
-            contact,
-            ..
-        } = self;
-        validate_muscles("grip.arm_muscles", &grip.arm_muscles)?;
-        validate_muscles("grip.hand_muscles", &grip.hand_muscles)?;
-        let [open, closed] = grip.flexion_deg;
-        for (field, value, low, high) in [
-            ("grip.thumb_base_m[0]", grip.thumb_base_m[0], -0.1, 0.2),
-            ("grip.thumb_base_m[1]", grip.thumb_base_m[1], -0.1, 0.1),
-            (
-                "grip.thumb_direction_deg",
-                grip.thumb_direction_deg,
-                0.0,
-                180.0,
-            ),
-            ("grip.flexion_deg[0]", open, -45.0, 90.0),
-            ("grip.flexion_deg[1]", closed, open + 1.0, 135.0),
-            ("grip.reflex_deg[0]", grip.reflex_deg[0], open, closed),
-            ("grip.reflex_deg[1]", grip.reflex_deg[1], open, closed),
-            ("object.density_kg_m3", object.density_kg_m3, 1.0, 1e5),
-            ("object.friction", object.friction, 0.0, 10.0),
-            (
-                "object.support_friction",
-                object.support_friction,
-                0.0,
-                10.0,
-            ),
-            ("object.linear_damping", object.linear_damping, 0.0, 1e3),
-            ("object.angular_damping", object.angular_damping, 0.0, 1e3),
-            ("contact.stiffness_n_m", contact.stiffness_n_m, 10.0, 1e7),
-            ("contact.relaxation_s", contact.relaxation_s, 0.0, 1.0),
-            ("contact.stiction_m_s", contact.stiction_m_s, 1e-6, 0.1),
-        ] {
-            within(field, value, low, high)?;
-        }
-        // The last segment's round end is its tip.
-        let radius = self.arm.half_width_m.min(0.4 * self.hand.finger_spacing_m);
-        for (field, tip) in [
-            ("hand.finger_m[3]", self.hand.finger_m[3]),
-            ("hand.thumb_m[3]", self.hand.thumb_m[3]),
-        ] {
-            within(field, tip, radius + 1e-4, 1.0)?;
-        }
-        Ok(())
-    }
-
-    fn validate_lengths(&self) -> Result<(), BodyError> {
-        let hand = &self.hand;
-        let named = |name: &'static str, all: [f64; 4]| {
-            all.into_iter()
-                .enumerate()
-                .map(move |(i, v)| (format!("hand.{name}[{i}]"), v))
-        };
-        let lengths = [
-            ("arm.upper_arm_m".to_owned(), self.arm.upper_arm_m),
-            ("arm.forearm_m".to_owned(), self.arm.forearm_m),
-            ("arm.half_width_m".to_owned(), self.arm.half_width_m),
-            ("hand.palm_m".to_owned(), hand.palm_m),
-            ("hand.palm_height_m".to_owned(), hand.palm_height_m),
-            ("hand.finger_spacing_m".to_owned(), hand.finger_spacing_m),
-            ("obstacle.radius_m".to_owned(), self.obstacle.radius_m),
-            ("obstacle.height_m".to_owned(), self.obstacle.height_m),
-            ("target.radius_m".to_owned(), self.target.radius_m),
-        ];
-        let segments = named("finger_m", hand.finger_m).chain(named("thumb_m", hand.thumb_m));
-        for (field, value) in lengths.into_iter().chain(segments) {
-            within(&field, value, 1e-4, 1.0)?;
-        }
-        Ok(())
-    }
-}
-
-/// Speed of a joint beyond which simulation says nothing of it \[rad/s\].
-const FASTEST_RAD_S: f64 = 1e3;
-
-fn validate_muscles(name: &str, muscles: &Muscles) -> Result<(), BodyError> {
-    within(&format!("{name}.kp"), muscles.kp, 1e-3, 1e6)?;
-    within(&format!("{name}.kd"), muscles.kd, 1e-3, 1e6)?;
-    // The speed that the torque keeps up is FASTEST_RAD_S at most.
-    let most = (FASTEST_RAD_S * muscles.kd).min(1e6);
-    within(
-        &format!("{name}.torque_max"),
-        muscles.torque_max,
-        1e-3,
-        most,
-    )
 }

@@ -3,12 +3,11 @@
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use crate::arm::PlanarArm;
+use crate::arm::{Dynamics, PlanarArm, cross_section};
 use crate::config::{Body, Muscles};
-use crate::dynamics::{Dynamics, cross_section};
+use crate::geometry::mass::MassProperties;
+use crate::geometry::solid::Solid;
 use crate::joints::ARM_JOINTS;
-use crate::mass::MassProperties;
-use crate::robot::Solid;
 use crate::skeleton::{self, Bone, BoneKind};
 
 /// A link, the joint that carries it, and the muscles of that joint.

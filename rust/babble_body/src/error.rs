@@ -1,3 +1,5 @@
+//! What can be wrong with a body or its world.
+
 use babble_eye::EyeError;
 
 /// What can be wrong with a body.
@@ -36,7 +38,7 @@ pub enum BodyError {
         /// What does not fit, with the numbers.
         problem: String,
     },
-    /// A world that came from outside is none that a robot like this one can get into.
+    /// A world that came from outside is not one that this robot can be in.
     #[error("world: {problem}")]
     World {
         /// What is wrong with it.
@@ -45,6 +47,15 @@ pub enum BodyError {
     /// The eye's config or its reflex failed.
     #[error(transparent)]
     Eye(#[from] EyeError),
+}
+
+impl BodyError {
+    /// A world with this problem.
+    pub(crate) fn world(problem: &str) -> Self {
+        Self::World {
+            problem: problem.to_owned(),
+        }
+    }
 }
 
 /// `Ok` when `value` is finite and inside `[low, high]`.

@@ -4,18 +4,17 @@
 pub mod arm;
 pub mod config;
 pub mod description;
-pub mod dynamics;
 mod error;
+pub mod geometry;
 pub mod joints;
-pub mod mass;
-pub mod obstacle;
+mod profiles;
 pub mod robot;
 pub mod skeleton;
+mod validate;
 pub mod visual;
 
-pub use arm::PlanarArm;
+pub use arm::{ArmState, ContactWatch, Dynamics, PlanarArm};
 pub use config::Body;
-pub use dynamics::{ArmState, Dynamics};
 pub use error::BodyError;
-pub use obstacle::{ContactWatch, Obstacle};
+pub use geometry::obstacle::Obstacle;
 pub use robot::Robot;

@@ -3,10 +3,10 @@
 //! At zero everything lies along +x. Each link is a bone from `a` to `b`; the hand is on edge, so
 //! that the fingers lie above one another and flex in the plane of motion.
 
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
 use crate::config::Body;
-use crate::error::BodyError;
+use crate::geometry::frame::Frame;
 use crate::joints::{JOINT_NAMES, Joints};
 
 /// Which piece of arm or hand a bone is.
@@ -33,44 +33,6 @@ pub struct Bone {
     pub b: Vector3<f64>,
 }
 
-/// A moving frame that walks down the chain of links.
-#[derive(Clone, Copy)]
-struct Frame {
-    origin: Vector3<f64>,
-    rotation: Rotation3<f64>,
-}
-
-impl Frame {
-    const fn at(origin: Vector3<f64>, rotation: Rotation3<f64>) -> Self {
-        Self { origin, rotation }
-    }
-
-    fn turn(self, axis: &Vector3<f64>, angle: f64) -> Self {
-        if angle == 0.0 {
-            return self;
-        }
-        // Rodrigues' formula through libm: the same bits on every platform.
-        let (s, c) = libm::sincos(angle);
-        let k = axis.cross_matrix();
-        let matrix = nalgebra::Matrix3::identity() + k * s + k * k * (1.0 - c);
-        Self {
-            rotation: self.rotation * Rotation3::from_matrix_unchecked(matrix),
-            ..self
-        }
-    }
-
-    fn forward(self, length: f64) -> Self {
-        self.shift(Vector3::new(length, 0.0, 0.0))
-    }
-
-    fn shift(self, by: Vector3<f64>) -> Self {
-        Self {
-            origin: self.origin + self.rotation * by,
-            ..self
-        }
-    }
-}
-
 /// Angles \[rad\] of the 26 joints in the order of [`JOINT_NAMES`].
 pub type JointAngles = [f64; 26];
 
@@ -94,21 +56,24 @@ pub fn joint_angles(joints: &Joints, q: [f64; 2]) -> JointAngles {
 pub fn bones(body: &Body, posture: &JointAngles) -> (Vec<Bone>, Vector3<f64>) {
     let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
     let mut bones = Vec::with_capacity(20);
-    let shoulder = Frame::at(Vector3::zeros(), Rotation3::identity())
-        .turn(&z, posture[0])
-        .turn(&y, posture[1])
-        .turn(&x, posture[2]);
+    let shoulder = Frame {
+        origin: Vector3::zeros(),
+        rotation: Matrix3::identity(),
+    }
+    .turned(&z, posture[0])
+    .turned(&y, posture[1])
+    .turned(&x, posture[2]);
     let elbow = push(
         &mut bones,
         BoneKind::UpperArm,
         shoulder,
         body.arm.upper_arm_m,
     )
-    .turn(&z, posture[3]);
+    .turned(&z, posture[3]);
     let wrist = push(&mut bones, BoneKind::Forearm, elbow, body.arm.forearm_m)
-        .turn(&z, posture[4])
-        .turn(&y, posture[5])
-        .turn(&x, posture[6]);
+        .turned(&z, posture[4])
+        .turned(&y, posture[5])
+        .turned(&x, posture[6]);
     let knuckles = push(&mut bones, BoneKind::Palm, wrist, body.hand.palm_m);
     digit(&mut bones, wrist, &body.hand.thumb_m, &posture[7..11], -1.0);
     let mut fingertip = Vector3::zeros();
@@ -117,7 +82,7 @@ pub fn bones(body: &Body, posture: &JointAngles) -> (Vec<Bone>, Vector3<f64>) {
         .enumerate()
     {
         let height = (1.5 - finger as f64) * body.hand.finger_spacing_m;
-        let base = knuckles.shift(Vector3::new(0.0, 0.0, height));
+        let base = knuckles.shifted(Vector3::new(0.0, 0.0, height));
         let angles = [
             pivot.map_or(0.0, |joint: usize| posture[joint]),
             posture[flexion],
@@ -137,10 +102,10 @@ fn digit(
     angles: &[f64],
     side: f64,
 ) -> Vector3<f64> {
-    let mut frame = base.turn(&Vector3::y(), angles[0]);
+    let mut frame = base.turned(&Vector3::y(), angles[0]);
     for (segment, length) in lengths.iter().enumerate() {
         if segment > 0 {
-            frame = frame.turn(&Vector3::z(), side * angles[segment]);
+            frame = frame.turned(&Vector3::z(), side * angles[segment]);
         }
         frame = push(bones, BoneKind::Digit, frame, *length);
     }
@@ -148,49 +113,11 @@ fn digit(
 }
 
 fn push(bones: &mut Vec<Bone>, kind: BoneKind, frame: Frame, length: f64) -> Frame {
-    let end = frame.forward(length);
+    let end = frame.shifted(Vector3::new(length, 0.0, 0.0));
     bones.push(Bone {
         kind,
         a: frame.origin,
         b: end.origin,
     });
     end
-}
-
-/// The elbow must turn about the vertical and the fingertip lie in the plane of motion, or the
-/// inverse kinematics of Sect. III-A does not exist; the obstacle must be as tall as the arm.
-pub(crate) fn validate_plane(body: &Body) -> Result<(), BodyError> {
-    const TOLERANCE_M: f64 = 1e-9;
-    let (bones, tip) = bones(body, &joint_angles(&body.joints, [0.0, 0.5]));
-    if bones[0].b.z.abs() > TOLERANCE_M || body.joints["shoulder_roll"].locked_deg != Some(0.0) {
-        return Err(BodyError::Geometry {
-            problem:
-                "shoulder_pitch and shoulder_roll must be locked at 0: the arm moves in its plane"
-                    .to_owned(),
-        });
-    }
-    if tip.z.abs() > TOLERANCE_M {
-        return Err(BodyError::Geometry {
-            problem: format!(
-                "the locked joints put the fingertip {:.4} m off the arm's plane",
-                tip.z
-            ),
-        });
-    }
-    let half = body.obstacle.height_m / 2.0;
-    let top = bones
-        .iter()
-        .flat_map(|bone| [bone.a.z.abs(), bone.b.z.abs()])
-        .fold(0.0, f64::max);
-    let top = top.max(body.hand.palm_height_m / 2.0);
-    if top > half {
-        return Err(BodyError::Geometry {
-            problem: format!(
-                "obstacle.height_m = {} must be at least {:.3}, so that arm and hand cannot pass above it",
-                body.obstacle.height_m,
-                2.0 * top
-            ),
-        });
-    }
-    Ok(())
 }

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::config::Body;
-use crate::obstacle::Obstacle;
+use crate::geometry::obstacle::Obstacle;
 use crate::skeleton::{self, Bone, BoneKind};
 use babble_eye::{Gaze, Material, Primitive, Shape};
 

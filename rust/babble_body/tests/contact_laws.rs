@@ -32,7 +32,7 @@ fn undamped(body: &mut Body) {
 /// The world with its ball in motion \[m/s\].
 fn thrown(world: &World, velocity: [f64; 3]) -> World {
     let mut value = serde_json::to_value(world).unwrap();
-    value["ball"]["velocity"] = velocity.to_vec().into();
+    value["mechanics"]["ball"]["velocity"] = velocity.to_vec().into();
     serde_json::from_value(value).unwrap()
 }
 
@@ -93,7 +93,7 @@ fn contacts_give_no_energy() {
         let m = mass(&robot, radius);
         let energy = |world: &World| {
             let value = serde_json::to_value(world).unwrap();
-            let spin = value["ball"]["spin"].as_array().unwrap();
+            let spin = value["mechanics"]["ball"]["spin"].as_array().unwrap();
             let spin: f64 = spin.iter().map(|w| w.as_f64().unwrap().powi(2)).sum();
             let u = robot.object_velocity(world).norm_squared();
             0.5 * m * (u + 0.4 * radius * radius * spin) + m * GRAVITY * robot.object(world).z

@@ -6,8 +6,8 @@ use std::collections::HashSet;
 
 use babble_body::config::Fingers;
 use babble_body::description::{self, LinkDescription};
-use babble_body::mass::MassProperties;
-use babble_body::robot::Solid;
+use babble_body::geometry::mass::MassProperties;
+use babble_body::geometry::solid::Solid;
 use babble_body::{Body, Dynamics, PlanarArm, Robot};
 use babble_eye::Shape;
 use grasping::{DT, FAR, setup};

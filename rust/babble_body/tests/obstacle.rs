@@ -2,7 +2,7 @@
 
 mod spread;
 
-use babble_body::obstacle::sweep;
+use babble_body::arm::sweep;
 use babble_body::skeleton;
 use babble_body::{Body, ContactWatch, Obstacle, PlanarArm};
 use nalgebra::Vector2;

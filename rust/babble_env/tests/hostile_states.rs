@@ -180,7 +180,7 @@ fn worlds_of_another_engine_are_refused() {
     refused(&mut in_contact("tree"), "rapier", |s| {
         s.world = general.world;
     });
-    refused(&mut in_contact("rapier"), "past", |s| {
+    refused(&mut in_contact("rapier"), "tree", |s| {
         s.world = special.world;
     });
 }

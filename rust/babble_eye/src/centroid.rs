@@ -111,19 +111,20 @@ fn lone(surface: &VisibleSurface, plane: &ImagePlane) -> Option<[f64; 2]> {
     pixels.centroid()
 }
 
-/// Centroid by drawing the window.
+/// Centroid by drawing the window, in the order of the scene: of two surfaces at the same depth, the
+/// earlier one is seen.
 fn drawn<'a>(
-    red: &[VisibleSurface],
+    red: &'a [VisibleSurface],
     others: impl Iterator<Item = &'a VisibleSurface>,
     window: Window,
     plane: &ImagePlane,
 ) -> Option<[f64; 2]> {
+    let mut surfaces: Vec<_> = red.iter().map(|surface| (0, surface)).collect();
+    surfaces.extend(others.map(|surface| (1, surface)));
+    surfaces.sort_by_key(|(_, surface)| surface.primitive);
     let mut buffer = DepthBuffer::new(window);
-    for surface in others {
-        buffer.draw(1, surface, plane);
-    }
-    for surface in red {
-        buffer.draw(0, surface, plane);
+    for (id, surface) in surfaces {
+        buffer.draw(id, surface, plane);
     }
     let mut pixels = Pixels::default();
     for j in window.rows.0..window.rows.1 {

@@ -1,9 +1,10 @@
 //! Arm and hand as plain data.
 
-use super::Robot;
-use super::links::{ContactRegion, Link, Muscle, Solid};
+use super::links::{ContactRegion, Link, Muscle};
+use super::model::Robot;
 use crate::config::Fingers;
 use crate::description::{LinkDescription, NamedSolid};
+use crate::geometry::solid::Solid;
 use crate::joints::ARM_JOINTS;
 
 /// From the lowest to the highest, as the links have them.
@@ -34,7 +35,7 @@ impl Robot {
             origin: link.origin.into(),
             direction: link.direction,
             clockwise: link.clockwise,
-            range: self.ranges[link.muscle.index()],
+            range: self.ranges()[link.muscle.index()],
             stops: false,
             muscles: link.muscle.settings(&self.body),
             inertia: link.inertia(self.body.arm.density_kg_m3),
@@ -63,7 +64,7 @@ impl Robot {
 /// The solids of a link; a virtual finger's link carries one of each finger.
 fn named(link: &str, solids: &[(ContactRegion, Solid)]) -> Vec<NamedSolid> {
     let of_digits = solids.len() == FINGERS.len();
-    let name = |i: usize, part: ContactRegion| match part {
+    let name = |i: usize, region: ContactRegion| match region {
         ContactRegion::Palm => "palm".to_owned(),
         ContactRegion::Fingers if of_digits => link.replace("finger", FINGERS[i]),
         _ => link.to_owned(),
@@ -71,8 +72,8 @@ fn named(link: &str, solids: &[(ContactRegion, Solid)]) -> Vec<NamedSolid> {
     solids
         .iter()
         .enumerate()
-        .map(|(i, &(part, solid))| NamedSolid {
-            name: name(i, part),
+        .map(|(i, &(region, solid))| NamedSolid {
+            name: name(i, region),
             solid,
         })
         .collect()

@@ -3,37 +3,14 @@
 use nalgebra::{Matrix3, Vector2, Vector3};
 
 use super::links::Link;
-use crate::arm::rotate;
+use crate::geometry::frame::{Frame, rotate, unrotate};
 
 /// Most joints that a robot has: those of independent fingers.
 pub(super) const MAX_JOINTS: usize = 18;
 
-/// A frame: where its origin is \[m\] and how it is turned.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Frame {
-    /// Origin in world coordinates \[m\].
-    pub origin: Vector3<f64>,
-    /// Columns: the frame's axes in world coordinates.
-    pub rotation: Matrix3<f64>,
-}
-
-impl Frame {
-    /// A point of the frame in world coordinates \[m\].
-    #[must_use]
-    pub fn world_from_local(&self, point: &Vector3<f64>) -> Vector3<f64> {
-        self.origin + self.rotation * point
-    }
-
-    /// A world point in the frame \[m\].
-    #[must_use]
-    pub fn local_from_world(&self, point: &Vector3<f64>) -> Vector3<f64> {
-        self.rotation.tr_mul(&(point - self.origin))
-    }
-}
-
 /// Where a link is: all are turned about the vertical alone.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Placed {
+pub(super) struct LinkPose {
     /// Its joint \[m\].
     pub(super) origin: Vector3<f64>,
     /// (cos, sin) of its direction.
@@ -41,7 +18,7 @@ pub(super) struct Placed {
     angle: f64,
 }
 
-impl Placed {
+impl LinkPose {
     /// Not placed yet.
     pub(super) const NOWHERE: Self = Self {
         origin: Vector3::new(0.0, 0.0, 0.0),
@@ -70,8 +47,7 @@ impl Placed {
 
     pub(super) fn local_from_world(&self, point: &Vector3<f64>) -> Vector3<f64> {
         let offset = point - self.origin;
-        let back = Vector2::new(self.direction.x, -self.direction.y);
-        rotate(offset.xy(), back).push(offset.z)
+        unrotate(offset.xy(), self.direction).push(offset.z)
     }
 
     pub(super) fn frame(&self) -> Frame {
@@ -84,10 +60,10 @@ impl Placed {
 }
 
 /// Every link with its joint at `q` \[rad\].
-pub(super) fn place(links: &[Link], q: impl Fn(usize) -> f64) -> [Placed; MAX_JOINTS] {
-    let mut placed = [Placed::NOWHERE; MAX_JOINTS];
+pub(super) fn place(links: &[Link], q: impl Fn(usize) -> f64) -> [LinkPose; MAX_JOINTS] {
+    let mut placed = [LinkPose::NOWHERE; MAX_JOINTS];
     for (i, link) in links.iter().enumerate() {
-        placed[i] = Placed::of(link, link.parent.map(|parent| &placed[parent]), q(i));
+        placed[i] = LinkPose::of(link, link.parent.map(|parent| &placed[parent]), q(i));
     }
     placed
 }

@@ -4,14 +4,14 @@
 //! the thumb is open.
 
 use nalgebra::Vector3;
-use serde::Serialize;
 
 use crate::config::{Body, Fingers, Muscles};
-use crate::mass::MassProperties;
+use crate::geometry::mass::MassProperties;
+use crate::geometry::solid::Solid;
 
-/// What a link belongs to, as touch tells it.
+/// The part of arm and hand whose contacts are told apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ContactRegion {
+pub(super) enum ContactRegion {
     /// Upper arm or forearm.
     Arm,
     /// The palm.
@@ -20,46 +20,6 @@ pub enum ContactRegion {
     Thumb,
     /// A segment of a finger.
     Fingers,
-}
-
-/// A solid in the frame of its link \[m\].
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(tag = "shape", rename_all = "snake_case")]
-pub enum Solid {
-    /// A capsule from `a` to `b`.
-    Capsule {
-        /// One end of its axis.
-        a: Vector3<f64>,
-        /// The other end.
-        b: Vector3<f64>,
-        /// Its radius.
-        radius: f64,
-    },
-    /// A box along the axes.
-    Cuboid {
-        /// Its centre.
-        centre: Vector3<f64>,
-        /// Half its edges.
-        half: Vector3<f64>,
-    },
-}
-
-impl Solid {
-    /// Its shadow in the plane of motion.
-    pub(super) fn flat(&self) -> Self {
-        let level = |v: &Vector3<f64>| Vector3::new(v.x, v.y, 0.0);
-        match self {
-            Self::Capsule { a, b, radius } => Self::Capsule {
-                a: level(a),
-                b: level(b),
-                radius: *radius,
-            },
-            Self::Cuboid { centre, half } => Self::Cuboid {
-                centre: level(centre),
-                half: *half,
-            },
-        }
-    }
 }
 
 /// Which of the four equilibrium points moves a joint.

@@ -1,18 +1,9 @@
-//! What touches what, and how hard.
+//! Contact forces of the last physics step.
 
-use super::Robot;
+use super::contact_slots::SUPPORT;
 use super::links::ContactRegion;
+use super::model::Robot;
 use super::world::World;
-
-/// Solids of arm and hand: two of the arm, the palm, four fingers and a thumb.
-pub(super) const SOLIDS: usize = 19;
-/// Where the support's impulse is kept.
-pub(super) const SUPPORT: usize = SOLIDS;
-/// Where the impulse between object and obstacle is kept.
-pub(super) const OBSTACLE: usize = SOLIDS + 1;
-/// All that can touch the object: the solids of arm and hand in the order of the links, the
-/// support, the obstacle.
-pub(super) const SLOTS: usize = SOLIDS + 2;
 
 /// Normal forces on the object, and whether the obstacle was hit, in one physics step. A force above
 /// zero is a contact.
@@ -51,13 +42,13 @@ impl Robot {
     #[must_use]
     pub fn touch(&self, world: &World) -> Touch {
         let mut touch = Touch {
-            support: world.impulses[SUPPORT] / self.dt,
-            obstacle: world.hit,
+            support: world.mechanics.impulses[SUPPORT] / self.dt,
+            obstacle: world.mechanics.hit,
             ..Touch::default()
         };
-        for (part, impulse) in self.parts.iter().zip(world.impulses) {
+        for (region, impulse) in self.regions.iter().zip(world.mechanics.impulses) {
             let force = impulse / self.dt;
-            match part {
+            match region {
                 ContactRegion::Arm => touch.arm += force,
                 ContactRegion::Palm => touch.palm += force,
                 ContactRegion::Thumb => touch.thumb += force,
@@ -70,6 +61,6 @@ impl Robot {
     /// How deep the object was inside of arm and hand as the last step began \[m\]; 0 if it was not.
     #[must_use]
     pub fn penetration(&self, world: &World) -> f64 {
-        world.depth
+        world.mechanics.depth
     }
 }

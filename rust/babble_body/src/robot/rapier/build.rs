@@ -3,11 +3,15 @@
 use nalgebra::{Unit, Vector3};
 use rapier3d::prelude::*;
 
+use super::input_log::CommandBounds;
+use super::model::{FREE_AXIS, OBJECT, Rapier};
 use super::seam::{hinge, vector};
-use super::{FREE_AXIS, OBJECT, Rapier, State};
+use super::simulation::Simulation;
 use crate::config::Body;
-use crate::robot::links::{Link, Solid};
-use crate::robot::touch::{OBSTACLE, SUPPORT};
+use crate::geometry::solid::Solid;
+use crate::robot::contact_slots::{OBSTACLE, SUPPORT};
+use crate::robot::links::Link;
+use crate::robot::muscles::MuscleModel;
 
 /// Radius of the template's object and obstacle, which every world replaces \[m\].
 const ANY_RADIUS: f32 = 0.03;
@@ -15,30 +19,33 @@ const ANY_RADIUS: f32 = 0.03;
 impl Rapier {
     /// The robot of `body`, stepped by `dt` \[s\].
     pub(in crate::robot) fn new(body: &Body, links: &[Link], dt: f64) -> Self {
-        let mut state = State::default();
-        let shoulder = state.bodies.insert(RigidBodyBuilder::fixed());
+        let muscles = MuscleModel::new(body, links);
+        let mut simulation = Simulation::default();
+        let shoulder = simulation.bodies.insert(RigidBodyBuilder::fixed());
         let mut bodies: Vec<RigidBodyHandle> = Vec::with_capacity(links.len());
         let mut joints = Vec::with_capacity(links.len());
         let mut slot = 0;
         for link in links {
-            let handle = insert_link(&mut state, body, link, &mut slot);
+            let handle = insert_link(&mut simulation, body, link, &mut slot);
             let parent = link.parent.map_or(shoulder, |parent| bodies[parent]);
-            let joint = state
+            let joint = simulation
                 .multibody_joints
                 .insert(parent, handle, joint(link), true);
             // Each link is new, so no joint closes a loop.
             joints.extend(joint);
             bodies.push(handle);
         }
-        set_damping(&mut state, body, links, &joints);
-        let (object, object_collider) = insert_object(&mut state, body);
-        let support = insert_support(&mut state, body);
-        let obstacle = insert_obstacle(&mut state, body);
+        set_damping(&mut simulation, body, links, &joints);
+        let (object, object_collider) = insert_object(&mut simulation, body);
+        let support = insert_support(&mut simulation, body);
+        let obstacle = insert_obstacle(&mut simulation, body);
         let parameters = parameters(dt);
         // One step far from everything, so that a copy's buffers have their sizes.
-        state.step(Vector::ZERO, &parameters);
+        simulation.step(Vector::ZERO, &parameters);
         Self {
-            template: state,
+            bounds: CommandBounds::new(body, muscles.ranges),
+            muscles,
+            template: simulation,
             parameters,
             bodies,
             joints,
@@ -72,16 +79,17 @@ fn parameters(dt: f64) -> IntegrationParameters {
     }
 }
 
-/// What a thing may touch: arm and hand pass through themselves and the support.
+/// The role of a collider, which decides what it may touch: arm and hand pass through themselves and
+/// the support.
 #[derive(Clone, Copy)]
-enum Thing {
+enum Role {
     Robot,
     Object,
     Support,
     Obstacle,
 }
 
-impl Thing {
+impl Role {
     fn groups(self) -> InteractionGroups {
         const ROBOT: Group = Group::GROUP_1;
         const OBJECT: Group = Group::GROUP_2;
@@ -98,22 +106,27 @@ impl Thing {
 }
 
 /// A link whose solids are marked with their slots, from `slot` on.
-fn insert_link(state: &mut State, body: &Body, link: &Link, slot: &mut u128) -> RigidBodyHandle {
+fn insert_link(
+    simulation: &mut Simulation,
+    body: &Body,
+    link: &Link,
+    slot: &mut u128,
+) -> RigidBodyHandle {
     // A spring wakes nothing, so nothing may sleep.
     let builder = RigidBodyBuilder::dynamic()
         .gravity_scale(0.0)
         .can_sleep(false);
-    let handle = state.bodies.insert(builder);
+    let handle = simulation.bodies.insert(builder);
     for (_, solid) in &link.solids {
         let collider = solid_collider(solid)
             .density(body.arm.density_kg_m3 as f32)
             .friction(body.object.friction as f32)
-            .collision_groups(Thing::Robot.groups())
+            .collision_groups(Role::Robot.groups())
             .user_data(*slot);
         *slot += 1;
-        state
+        simulation
             .colliders
-            .insert_with_parent(collider, handle, &mut state.bodies);
+            .insert_with_parent(collider, handle, &mut simulation.bodies);
     }
     handle
 }
@@ -138,12 +151,17 @@ fn joint(link: &Link) -> GenericJoint {
         .build()
 }
 
-fn set_damping(state: &mut State, body: &Body, links: &[Link], joints: &[MultibodyJointHandle]) {
-    let State {
+fn set_damping(
+    simulation: &mut Simulation,
+    body: &Body,
+    links: &[Link],
+    joints: &[MultibodyJointHandle],
+) {
+    let Simulation {
         bodies,
         multibody_joints,
         ..
-    } = state;
+    } = simulation;
     let Some((multibody, _)) = multibody_joints.get_mut(joints[0]) else {
         return;
     };
@@ -161,9 +179,9 @@ fn set_damping(state: &mut State, body: &Body, links: &[Link], joints: &[Multibo
     multibody.update_rigid_bodies(bodies, true);
 }
 
-fn insert_object(state: &mut State, body: &Body) -> (RigidBodyHandle, ColliderHandle) {
+fn insert_object(simulation: &mut Simulation, body: &Body) -> (RigidBodyHandle, ColliderHandle) {
     let far = Vector::new(0.0, -10.0, 0.0);
-    let handle = state.bodies.insert(
+    let handle = simulation.bodies.insert(
         RigidBodyBuilder::dynamic()
             .translation(far)
             .linear_damping(body.object.linear_damping as f32)
@@ -173,33 +191,34 @@ fn insert_object(state: &mut State, body: &Body) -> (RigidBodyHandle, ColliderHa
     let collider = ColliderBuilder::ball(ANY_RADIUS)
         .density(body.object.density_kg_m3 as f32)
         .friction(body.object.friction as f32)
-        .collision_groups(Thing::Object.groups())
+        .collision_groups(Role::Object.groups())
         .user_data(OBJECT as u128);
-    let collider = state
-        .colliders
-        .insert_with_parent(collider, handle, &mut state.bodies);
+    let collider =
+        simulation
+            .colliders
+            .insert_with_parent(collider, handle, &mut simulation.bodies);
     (handle, collider)
 }
 
-fn insert_support(state: &mut State, body: &Body) -> ColliderHandle {
+fn insert_support(simulation: &mut Simulation, body: &Body) -> ColliderHandle {
     let plane = ColliderBuilder::halfspace(Unit::new_unchecked(Vector::Z))
         .friction(body.object.support_friction as f32)
         .friction_combine_rule(CoefficientCombineRule::Min)
-        .collision_groups(Thing::Support.groups())
+        .collision_groups(Role::Support.groups())
         .user_data(SUPPORT as u128)
         .enabled(false);
-    state.colliders.insert(plane)
+    simulation.colliders.insert(plane)
 }
 
-fn insert_obstacle(state: &mut State, body: &Body) -> ColliderHandle {
+fn insert_obstacle(simulation: &mut Simulation, body: &Body) -> ColliderHandle {
     let half = body.obstacle.height_m as f32 / 2.0;
     // The engine's cylinders stand along y.
     let upright = Vector::X * std::f32::consts::FRAC_PI_2;
     let cylinder = ColliderBuilder::cylinder(half, ANY_RADIUS)
         .rotation(upright)
         .friction(body.object.friction as f32)
-        .collision_groups(Thing::Obstacle.groups())
+        .collision_groups(Role::Obstacle.groups())
         .user_data(OBSTACLE as u128)
         .enabled(false);
-    state.colliders.insert(cylinder)
+    simulation.colliders.insert(cylinder)
 }

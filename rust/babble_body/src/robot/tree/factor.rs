@@ -7,6 +7,7 @@
 
 use std::ops::Range;
 
+use crate::robot::kinematics::MAX_JOINTS;
 use crate::robot::links::{FOREARM, Link};
 
 /// Velocities of the ball.
@@ -14,7 +15,10 @@ pub(super) const BALL: usize = 6;
 /// The ball's, the shoulder's and the elbow's: ancestors of all digits.
 const TRUNK: usize = BALL + FOREARM + 1;
 /// Most velocities.
-pub(super) const SIZE: usize = BALL + crate::robot::kinematics::MAX_JOINTS;
+pub(super) const SIZE: usize = BALL + MAX_JOINTS;
+
+/// Velocities: of the ball (3), its spin (3), the joints.
+pub(super) type Velocities = [f64; SIZE];
 
 /// A symmetric matrix: the lower triangle, of which ancestors alone count.
 pub(super) type Matrix = [[f64; SIZE]; SIZE];

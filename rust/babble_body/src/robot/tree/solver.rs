@@ -16,14 +16,16 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use super::factor::{BALL, Matrix, SIZE};
-use super::mechanics::Speeds;
-use super::term::Term;
-use super::{Equations, Tree, Velocities};
-use crate::robot::kinematics::{MAX_JOINTS, Placed, place};
+use super::contact_cost::ContactCost;
+use super::equations::Equations;
+use super::factor::{BALL, Matrix, SIZE, Velocities};
+use super::line::{Line, LinePoint};
+use super::model::Tree;
+use super::speeds::Speeds;
+use crate::robot::contact_slots::SOLIDS;
+use crate::robot::kinematics::{LinkPose, MAX_JOINTS, place};
 use crate::robot::links::FOREARM;
-use crate::robot::touch::SOLIDS;
-use crate::robot::world::World;
+use crate::robot::mechanics::MechanicalState;
 
 /// Velocities of shoulder and elbow.
 const ARM: Range<usize> = BALL..BALL + FOREARM + 1;
@@ -36,33 +38,33 @@ impl Tree {
     /// Velocities at the end of the step.
     pub(super) fn with_contacts(
         &self,
-        world: &World,
-        placed: &[Placed; MAX_JOINTS],
+        mechanics: &MechanicalState,
+        poses: &[LinkPose; MAX_JOINTS],
         equations: &Equations,
         free: Velocities,
-        terms: &[Term],
+        costs: &[ContactCost],
     ) -> Velocities {
-        if terms.is_empty() {
+        if costs.is_empty() {
             return free;
         }
-        let coupled = terms.iter().any(|term| term.contact.chain > 0);
+        let coupled = costs.iter().any(|cost| cost.contact.chain > 0);
         let rows = if coupled {
             self.sparsity.all()
         } else {
             0..BALL
         };
         let mut velocities = free;
-        self.begin(world, placed, &rows, &mut velocities);
+        self.begin(mechanics, poses, &rows, &mut velocities);
         let mut problem = Problem {
             tree: self,
             equations,
-            terms,
+            costs,
             rows,
             velocities,
             slopes: [0.0; SIZE],
             factors: equations.matrix,
         };
-        problem.solve(TOLERANCE * self.mass(&world.ball));
+        problem.solve(TOLERANCE * self.mass(&mechanics.ball));
         problem.velocities
     }
 
@@ -70,31 +72,32 @@ impl Tree {
     /// nothing touched it: then surfaces that stick nearly do so at once.
     fn begin(
         &self,
-        world: &World,
-        placed: &[Placed; MAX_JOINTS],
+        mechanics: &MechanicalState,
+        poses: &[LinkPose; MAX_JOINTS],
         rows: &Range<usize>,
         velocities: &mut Velocities,
     ) {
-        let ball = &world.ball;
+        let ball = &mechanics.ball;
         let (mut velocity, mut spin) = (ball.velocity, ball.spin);
         if rows.end > BALL {
-            velocities[ARM.end..rows.end].copy_from_slice(&world.v[FOREARM + 1..rows.end - BALL]);
+            velocities[ARM.end..rows.end]
+                .copy_from_slice(&mechanics.v[FOREARM + 1..rows.end - BALL]);
         }
-        if world.impulses[..SOLIDS]
+        if mechanics.impulses[..SOLIDS]
             .iter()
             .any(|&impulse| impulse > 0.0)
         {
             let arm = &self.links[..=FOREARM];
-            let before = place(arm, |i| world.q[i] - self.dt * world.v[i]);
-            let old = Speeds::of(arm, &before, &world.v);
-            let new = Speeds::of(arm, placed, &velocities[ARM]);
+            let before = place(arm, |i| mechanics.q[i] - self.dt * mechanics.v[i]);
+            let old = Speeds::of(arm, &before, &mechanics.v);
+            let new = Speeds::of(arm, poses, &velocities[ARM]);
             let there = (ball.centre - ball.velocity * self.dt).xy();
             let (was, is) = (
                 old.at(FOREARM, &before, there),
-                new.at(FOREARM, placed, ball.centre.xy()),
+                new.at(FOREARM, poses, ball.centre.xy()),
             );
             let back = before[FOREARM].frame().rotation.transpose();
-            let turn = placed[FOREARM].frame().rotation * back;
+            let turn = poses[FOREARM].frame().rotation * back;
             velocity = turn * (velocity - was.push(0.0)) + is.push(0.0);
             let turns = [&old, &new].map(|speeds| Vector3::z() * speeds.turn(FOREARM));
             spin = turn * (spin - turns[0]) + turns[1];
@@ -108,7 +111,7 @@ impl Tree {
 struct Problem<'a> {
     tree: &'a Tree,
     equations: &'a Equations,
-    terms: &'a [Term],
+    costs: &'a [ContactCost],
     rows: Range<usize>,
     velocities: Velocities,
     /// Slopes of the function there.
@@ -149,19 +152,19 @@ impl Problem<'_> {
         for k in self.rows.clone() {
             self.slopes[k] -= rhs[k];
         }
-        for term in self.terms {
-            let relative = term.contact.relative(&self.velocities);
-            let impulse = term.impulse(&relative);
-            term.contact.apply(&-impulse, &mut self.slopes);
+        for cost in self.costs {
+            let relative = cost.contact.relative(&self.velocities);
+            let impulse = cost.impulse(&relative);
+            cost.contact.apply(&-impulse, &mut self.slopes);
         }
     }
 
     fn factor(&mut self) {
         self.factors = self.equations.matrix;
-        for term in self.terms {
-            let relative = term.contact.relative(&self.velocities);
-            let curvature = term.curvature(&relative);
-            term.contact.add(&curvature, &mut self.factors);
+        for cost in self.costs {
+            let relative = cost.contact.relative(&self.velocities);
+            let curvature = cost.curvature(&relative);
+            cost.contact.add(&curvature, &mut self.factors);
         }
         self.tree.sparsity.factor(&mut self.factors, &self.rows);
     }
@@ -219,12 +222,12 @@ impl Problem<'_> {
             sparsity.product(&self.equations.matrix, direction, &self.rows)
         };
         let points: Vec<_> = self
-            .terms
+            .costs
             .iter()
-            .map(|term| Point {
-                term,
-                relative: term.contact.relative(&self.velocities),
-                change: term.contact.relative(direction),
+            .map(|cost| LinePoint {
+                cost,
+                relative: cost.contact.relative(&self.velocities),
+                change: cost.contact.relative(direction),
             })
             .collect();
         let pushed: f64 = points.iter().map(|point| point.pushed(0.0)).sum();
@@ -239,33 +242,4 @@ impl Problem<'_> {
 /// False where rounding left nothing of the curvature: links of a milligram, contacts of 10⁷ N/m.
 fn is_downhill(gain: f64) -> bool {
     gain >= 0.0 && gain.is_finite()
-}
-
-/// A contact along a line.
-struct Point<'a> {
-    term: &'a Term,
-    relative: Vector3<f64>,
-    change: Vector3<f64>,
-}
-
-impl Point<'_> {
-    fn pushed(&self, share: f64) -> f64 {
-        let relative = self.relative + self.change * share;
-        self.term.impulse(&relative).dot(&self.change)
-    }
-}
-
-/// The function along a line.
-struct Line<'a> {
-    linear: f64,
-    quadratic: f64,
-    points: Vec<Point<'a>>,
-}
-
-impl Line<'_> {
-    /// Its slope after a share of the step \[J\].
-    fn slope(&self, share: f64) -> f64 {
-        let pushed: f64 = self.points.iter().map(|point| point.pushed(share)).sum();
-        self.linear + share * self.quadratic - pushed
-    }
 }

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
-use crate::robot::Solid;
+use super::solid::Solid;
 
 /// Mass, centre of mass and rotational inertia of a rigid body.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

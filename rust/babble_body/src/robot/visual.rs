@@ -2,20 +2,23 @@
 
 use nalgebra::Vector3;
 
-use super::kinematics::{Frame, place};
-use super::links::{ContactRegion, Solid};
-use super::{Robot, World};
+use super::kinematics::place;
+use super::links::ContactRegion;
+use super::model::Robot;
+use super::world::World;
+use crate::geometry::frame::Frame;
+use crate::geometry::solid::Solid;
 use crate::visual::{FOREARM, SKIN, SLEEVE};
 use babble_eye::{Material, Primitive, Shape};
 
 impl Robot {
     /// Adds arm and hand, the upper arm first.
     pub fn push_visible(&self, world: &World, scene: &mut Vec<Primitive>) {
-        let placed = place(&self.links, |i| world.q[i]);
+        let placed = place(&self.links, |i| world.mechanics.q[i]);
         for (i, (link, placed)) in self.links.iter().zip(&placed).enumerate() {
             let frame = placed.frame();
-            for (part, solid) in &link.solids {
-                scene.push(Primitive::new(shape(solid, &frame), material(*part, i)));
+            for (region, solid) in &link.solids {
+                scene.push(Primitive::new(shape(solid, &frame), material(*region, i)));
             }
         }
     }
@@ -27,8 +30,8 @@ impl Robot {
     }
 }
 
-fn material(part: ContactRegion, link: usize) -> Material {
-    match part {
+fn material(region: ContactRegion, link: usize) -> Material {
+    match region {
         ContactRegion::Arm if link == 0 => SLEEVE,
         ContactRegion::Arm => FOREARM,
         ContactRegion::Palm | ContactRegion::Thumb | ContactRegion::Fingers => SKIN,

@@ -1,15 +1,16 @@
-//! What a contact adds to the function that the solver minimises, and what it leaves in the world.
+//! What a contact adds to the function that the solver minimises, and what it leaves in the mechanics.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::contact::Contact;
-use super::{Tree, Velocities};
+use super::factor::Velocities;
+use super::model::Tree;
 use crate::config;
-use crate::robot::touch::{SLOTS, SOLIDS};
-use crate::robot::world::World;
+use crate::robot::contact_slots::{SLOTS, SOLIDS};
+use crate::robot::mechanics::MechanicalState;
 
-/// A contact in the function that is minimised.
-pub(super) struct Term {
+/// A contact and the numbers of its cost.
+pub(super) struct ContactCost {
     pub(super) contact: Contact,
     /// v̂ \[m/s\]
     aim: f64,
@@ -21,7 +22,7 @@ pub(super) struct Term {
     stiction: f64,
 }
 
-impl Term {
+impl ContactCost {
     /// Impulse along the normal at a relative velocity \[N·s\].
     fn pressed(&self, relative: &Vector3<f64>) -> f64 {
         self.stiffness * (self.aim - self.contact.normal.dot(relative)).max(0.0)
@@ -58,20 +59,24 @@ impl Term {
 }
 
 impl Tree {
-    pub(super) fn terms(&self, world: &World, contacts: Vec<Contact>) -> Vec<Term> {
+    pub(super) fn contact_costs(
+        &self,
+        mechanics: &MechanicalState,
+        contacts: Vec<Contact>,
+    ) -> Vec<ContactCost> {
         let config::ContactModel {
             stiffness_n_m,
             relaxation_s,
             stiction_m_s,
         } = self.contact;
-        let term = |contact: Contact| {
+        let cost = |contact: Contact| {
             let time = if contact.depth > 0.0 {
                 relaxation_s + self.dt
             } else {
                 self.dt
             };
-            let last = contact.slot.map_or(0.0, |slot| world.impulses[slot]);
-            Term {
+            let last = contact.slot.map_or(0.0, |slot| mechanics.impulses[slot]);
+            ContactCost {
                 aim: contact.depth / time,
                 stiffness: self.dt * stiffness_n_m * (relaxation_s + self.dt),
                 grip: contact.friction * last,
@@ -79,25 +84,29 @@ impl Tree {
                 contact,
             }
         };
-        contacts.into_iter().map(term).collect()
+        contacts.into_iter().map(cost).collect()
     }
 }
 
-/// Writes down what touched.
-pub(super) fn note_contacts(world: &mut World, velocities: &Velocities, terms: &[Term]) {
-    world.impulses = [0.0; SLOTS];
-    world.hit = false;
-    world.depth = 0.0;
-    for term in terms {
-        let pressed = term.pressed(&term.contact.relative(velocities));
-        match term.contact.slot {
+/// Writes impulses and depths of the contacts into the state.
+pub(super) fn note_contacts(
+    mechanics: &mut MechanicalState,
+    velocities: &Velocities,
+    costs: &[ContactCost],
+) {
+    mechanics.impulses = [0.0; SLOTS];
+    mechanics.hit = false;
+    mechanics.depth = 0.0;
+    for cost in costs {
+        let pressed = cost.pressed(&cost.contact.relative(velocities));
+        match cost.contact.slot {
             Some(slot) => {
-                world.impulses[slot] = pressed;
+                mechanics.impulses[slot] = pressed;
                 if slot < SOLIDS {
-                    world.depth = world.depth.max(term.contact.depth);
+                    mechanics.depth = mechanics.depth.max(cost.contact.depth);
                 }
             }
-            None => world.hit |= pressed > 0.0,
+            None => mechanics.hit |= pressed > 0.0,
         }
     }
 }

@@ -4,18 +4,11 @@
 //! plane of motion.
 
 use nalgebra::Vector2;
-use serde::{Deserialize, Serialize};
 
-use crate::arm::{ArmPose, PlanarArm, Segment, rotate};
-
-/// A vertical cylinder through the plane of motion.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Obstacle {
-    /// Where its axis meets the plane \[m\].
-    pub centre: Vector2<f64>,
-    /// Its radius \[m\].
-    pub radius: f64,
-}
+use super::outline::Segment;
+use super::planar_arm::{ArmPose, PlanarArm};
+use crate::geometry::frame::unrotate;
+use crate::geometry::obstacle::Obstacle;
 
 impl Obstacle {
     /// Distance between the surfaces of obstacle and arm in posture `q` \[m\]; negative inside.
@@ -96,22 +89,11 @@ pub fn sweep(arm: &PlanarArm, from: [f64; 2], to: [f64; 2]) -> f64 {
         + (to[1] - from[1]).abs() * arm.fore_radius
 }
 
-fn unrotate(v: Vector2<f64>, direction: Vector2<f64>) -> Vector2<f64> {
-    rotate(v, Vector2::new(direction.x, -direction.y))
-}
-
 fn least_distance_squared(segments: &[Segment], point: Vector2<f64>) -> f64 {
     segments
         .iter()
-        .map(|segment| distance_squared(segment, point))
+        .map(|segment| segment.distance_squared(point))
         .fold(f64::INFINITY, f64::min)
-}
-
-fn distance_squared(segment: &Segment, point: Vector2<f64>) -> f64 {
-    let along = segment.b - segment.a;
-    let to_point = point - segment.a;
-    let share = (to_point.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-    (to_point - along * share).norm_squared()
 }
 
 /// Watches a moving arm for its first touch of an obstacle.

@@ -10,7 +10,7 @@
 //! is stable at any step. M is the arm's inertia, C its Coriolis and centrifugal torque; gravity is
 //! compensated (Sect. II-B).
 
-use crate::arm::PlanarArm;
+use super::planar_arm::PlanarArm;
 use crate::config::{Body, Muscles};
 use crate::skeleton::{self, BoneKind};
 

@@ -1,20 +1,20 @@
-//! How far things are from the ball, and in which direction.
+//! Signed distances from surfaces to a point, with their normals.
 
 use nalgebra::{Vector2, Vector3};
 
-use crate::obstacle::Obstacle;
-use crate::robot::links::Solid;
+use super::obstacle::Obstacle;
+use super::solid::Solid;
 
-/// From a surface to a point: how far, negative inside, and the direction outwards.
+/// Signed distance from a surface to a point, negative inside, and the outward normal there.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Gap {
+pub(crate) struct Separation {
     /// \[m\]
-    pub(super) distance: f64,
-    pub(super) normal: Vector3<f64>,
+    pub(crate) distance: f64,
+    pub(crate) normal: Vector3<f64>,
 }
 
-/// From a solid to a point of its link's frame.
-pub(super) fn from_solid(solid: &Solid, point: &Vector3<f64>) -> Gap {
+/// Separation of a point of its link's frame from a solid.
+pub(crate) fn from_solid(solid: &Solid, point: &Vector3<f64>) -> Separation {
     match solid {
         Solid::Capsule { a, b, radius } => {
             let along = b - a;
@@ -27,7 +27,7 @@ pub(super) fn from_solid(solid: &Solid, point: &Vector3<f64>) -> Gap {
     }
 }
 
-fn from_cuboid(point: &Vector3<f64>, half: &Vector3<f64>) -> Gap {
+fn from_cuboid(point: &Vector3<f64>, half: &Vector3<f64>) -> Separation {
     let nearest = point.zip_map(half, |p, h| p.clamp(-h, h));
     if nearest != *point {
         return outwards(point - nearest, 0.0, Vector3::y());
@@ -37,14 +37,18 @@ fn from_cuboid(point: &Vector3<f64>, half: &Vector3<f64>) -> Gap {
     let face = beyond.imax();
     let mut normal = Vector3::zeros();
     normal[face] = if point[face] < 0.0 { -1.0 } else { 1.0 };
-    Gap {
+    Separation {
         distance: beyond[face],
         normal,
     }
 }
 
-/// From an upright cylinder around the origin's height to a point.
-pub(super) fn from_obstacle(obstacle: &Obstacle, half_height: f64, point: &Vector3<f64>) -> Gap {
+/// Separation of a point from an obstacle, which reaches `half_height` above and below the plane \[m\].
+pub(crate) fn from_obstacle(
+    obstacle: &Obstacle,
+    half_height: f64,
+    point: &Vector3<f64>,
+) -> Separation {
     let offset = point.xy() - obstacle.centre;
     let radial = outwards(offset.push(0.0), obstacle.radius, Vector3::x());
     let above = point.z.abs() - half_height;
@@ -55,11 +59,11 @@ pub(super) fn from_obstacle(obstacle: &Obstacle, half_height: f64, point: &Vecto
             0.0,
             radial.normal,
         ),
-        (false, false) if radial.distance < above => Gap {
+        (false, false) if radial.distance < above => Separation {
             distance: above,
             normal: up,
         },
-        (false, true) => Gap {
+        (false, true) => Separation {
             distance: above,
             normal: up,
         },
@@ -67,14 +71,14 @@ pub(super) fn from_obstacle(obstacle: &Obstacle, half_height: f64, point: &Vecto
     }
 }
 
-/// From a solid, seen from above, to a point of the plane in its link's frame.
-pub(super) fn from_shadow(solid: &Solid, foot: Vector2<f64>) -> Gap {
-    from_solid(&solid.flat(), &foot.push(0.0))
+/// Separation of a point of the plane from a solid's projection into it, in its link's frame.
+pub(crate) fn from_projected(solid: &Solid, foot: Vector2<f64>) -> Separation {
+    from_solid(&solid.projected(), &foot.push(0.0))
 }
 
-fn outwards(offset: Vector3<f64>, radius: f64, otherwise: Vector3<f64>) -> Gap {
+fn outwards(offset: Vector3<f64>, radius: f64, otherwise: Vector3<f64>) -> Separation {
     let length = offset.norm();
-    Gap {
+    Separation {
         distance: length - radius,
         normal: if length > 0.0 {
             offset / length

@@ -5,18 +5,10 @@
 
 use nalgebra::Vector2;
 
+use super::outline::{Segment, TOLERANCE_M, merge};
 use crate::config::Body;
-use crate::error::BodyError;
+use crate::geometry::frame::rotate;
 use crate::skeleton::{self, BoneKind};
-
-/// A straight piece of the arm in the plane of motion, in the frame of its link \[m\].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Segment {
-    /// Near end.
-    pub a: Vector2<f64>,
-    /// Far end.
-    pub b: Vector2<f64>,
-}
 
 /// The arm in its plane: lengths, ranges and outline.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,8 +32,6 @@ pub struct PlanarArm {
     /// Largest distance of a point of forearm and hand from the elbow \[m\].
     pub fore_radius: f64,
 }
-
-const TOLERANCE_M: f64 = 1e-9;
 
 /// Where the arm is in its plane for a posture.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -109,25 +99,6 @@ impl PlanarArm {
             tip_angle: libm::atan2(tip.y, tip.x),
             ..self.clone()
         }
-    }
-
-    /// The elbow must stay on one side, so that inverse kinematics has one branch (item 3).
-    pub(crate) fn validate(&self) -> Result<(), BodyError> {
-        let (low, high) = (
-            self.lower[1] + self.tip_angle,
-            self.upper_limit[1] + self.tip_angle,
-        );
-        if low < 0.0 || high > std::f64::consts::PI {
-            return Err(BodyError::Geometry {
-                problem: format!(
-                    "the elbow's range puts the fingertip at {:.1}…{:.1}° from the upper arm; it must stay in \
-                     0…180°, or inverse kinematics has two branches",
-                    low.to_degrees(),
-                    high.to_degrees()
-                ),
-            });
-        }
-        Ok(())
     }
 
     /// Forward kinematics of posture `q` \[rad\].
@@ -223,47 +194,4 @@ impl PlanarArm {
             angle
         }
     }
-}
-
-/// `v` turned by the angle whose (cos, sin) is `direction`.
-pub(crate) fn rotate(v: Vector2<f64>, direction: Vector2<f64>) -> Vector2<f64> {
-    Vector2::new(
-        v.x * direction.x - v.y * direction.y,
-        v.x * direction.y + v.y * direction.x,
-    )
-}
-
-/// Joins segments that lie on one line and touch; the stretched arm becomes one segment a link.
-fn merge(mut segments: Vec<Segment>) -> Vec<Segment> {
-    let mut merged: Vec<Segment> = Vec::new();
-    while let Some(mut segment) = segments.pop() {
-        while let Some(i) = segments
-            .iter()
-            .position(|other| union(&segment, other).is_some())
-        {
-            let other = segments.swap_remove(i);
-            segment = union(&segment, &other).unwrap_or(segment);
-        }
-        merged.push(segment);
-    }
-    merged
-}
-
-/// The segment that covers both, if they are collinear and touch.
-fn union(s: &Segment, t: &Segment) -> Option<Segment> {
-    let direction = (s.b - s.a).normalize();
-    let off_line = |p: Vector2<f64>| direction.perp(&(p - s.a)).abs() > TOLERANCE_M;
-    if off_line(t.a) || off_line(t.b) {
-        return None;
-    }
-    let at = |p: Vector2<f64>| direction.dot(&(p - s.a));
-    let (s_low, s_high) = (0.0, at(s.b));
-    let (t_low, t_high) = (at(t.a).min(at(t.b)), at(t.a).max(at(t.b)));
-    if t_low > s_high + TOLERANCE_M || t_high < s_low - TOLERANCE_M {
-        return None;
-    }
-    Some(Segment {
-        a: s.a + direction * s_low.min(t_low),
-        b: s.a + direction * s_high.max(t_high),
-    })
 }

@@ -153,3 +153,18 @@ fn impossible_geometry_is_refused() {
         assert!(error.to_string().contains(words), "{error}");
     }
 }
+
+/// A build without rapier says so, and names the engine.
+#[cfg(not(feature = "rapier"))]
+#[test]
+fn an_engine_that_is_not_built_in_is_refused() {
+    let mut body = serde_json::to_value(Body::paper()).unwrap();
+    body["engine"] = "rapier".into();
+    let error = serde_json::from_value::<Body>(body)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("engine `rapier` is not part of this build"),
+        "{error}"
+    );
+}

@@ -59,7 +59,8 @@ fn agree(ours: &MassProperties, theirs: &ParryMass) -> Result<(), TestCaseError>
     let tensor = theirs.reconstruct_inertia_matrix().to_cols_array();
     let tensor = Matrix3::from_iterator(tensor.map(f64::from));
     let error = (ours.inertia - tensor).norm() / tensor.norm();
-    prop_assert!(error < 1e-4, "{} {tensor}", ours.inertia);
+    // parry adds in single precision, and keeps the tensor as roots of its inverse.
+    prop_assert!(error < 1e-3, "{} {tensor}", ours.inertia);
     Ok(())
 }
 

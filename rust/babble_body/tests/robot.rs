@@ -1,33 +1,27 @@
-//! The robot that grasps, against closed forms, and each trap of its engine.
+//! The robot that grasps, against closed forms, and each trap of rapier, in both engines.
 
 mod grasping;
 mod spread;
 
 use std::f64::consts::FRAC_PI_2;
 
-use babble_body::config::{EngineName, Fingers};
+use babble_body::config::Fingers;
 use babble_body::robot::{Ball, MuscleCommand, Robot, Setup, towards};
 use babble_body::{ArmState, Body, Dynamics, Obstacle, PlanarArm};
-use grasping::{DT, FAR, ball_at_palm, bytes, reflex, run, setup};
+use grasping::{DT, FAR, ball_at_palm, bytes, reflex, robots, run, setup, with};
 use nalgebra::{Vector2, Vector3};
 use proptest::prelude::*;
 use spread::spread;
 
 fn robot() -> Robot {
-    Robot::new(&Body::paper(), DT)
+    with(|_| ())
 }
 
-/// The same in rapier.
-fn reference() -> Robot {
-    let mut body = Body::paper();
-    body.engine = EngineName::Rapier;
-    Robot::new(&body, DT)
-}
-
-fn independent() -> Robot {
-    let mut body = Body::paper();
-    body.grip.fingers = Fingers::Independent;
-    Robot::new(&body, DT)
+/// Both kinds of fingers in every engine.
+fn all_robots() -> impl Iterator<Item = Robot> {
+    [Fingers::Virtual, Fingers::Independent]
+        .into_iter()
+        .flat_map(robots)
 }
 
 /// The arm moves as reaching's closed form does with the same muscles. Catches an inertia, a
@@ -62,7 +56,7 @@ fn free_motion_is_the_closed_form() {
 /// while the root still counts as free, and thumb or fingers that drag each other.
 #[test]
 fn the_hand_closes_with_its_time_constant() {
-    for robot in [robot(), independent()] {
+    for robot in all_robots() {
         let mut world = robot.world(&setup(robot.open_hand([0.3, 1.0]), FAR));
         let drive = towards([0.3, 1.0, 0.6, 1.2]);
         for second in 1..=4 {
@@ -81,7 +75,11 @@ fn the_hand_closes_with_its_time_constant() {
 /// without a drive. Catches a root with six joints of its own, and gravity on the arm.
 #[test]
 fn nothing_moves_by_itself() {
-    for (robot, joints) in [(robot(), 9), (independent(), 18)] {
+    for robot in all_robots() {
+        let joints = match robot.body().grip.fingers {
+            Fingers::Virtual => 9,
+            Fingers::Independent => 18,
+        };
         let posture = [0.4, 0.9, 0.2, 0.3];
         let mut world = robot.world(&setup(posture, FAR));
         assert_eq!(robot.joint_angles(&world).len(), joints);
@@ -92,17 +90,19 @@ fn nothing_moves_by_itself() {
     }
 }
 
-/// A spring that is set after a long rest moves its joint: nothing sleeps.
+/// A spring that is set after a long rest moves its joint: nothing sleeps. Catches links that rapier
+/// puts to sleep, as it does unless told not to.
 #[test]
 fn an_arm_at_rest_does_not_fall_asleep() {
-    let robot = robot();
-    let rest = robot.open_hand([0.0, 0.5]);
-    let mut world = robot.world(&setup(rest, FAR));
-    run(&robot, &mut world, &towards(rest), 20.0);
-    let there = [0.5, 1.0, 0.5, 0.5];
-    run(&robot, &mut world, &towards(there), 8.0);
-    for (now, asked) in robot.posture(&world).into_iter().zip(there) {
-        assert!((now - asked).abs() < 2e-3, "{now} {asked}");
+    for robot in robots(Fingers::Virtual) {
+        let rest = robot.open_hand([0.0, 0.5]);
+        let mut world = robot.world(&setup(rest, FAR));
+        run(&robot, &mut world, &towards(rest), 20.0);
+        let there = [0.5, 1.0, 0.5, 0.5];
+        run(&robot, &mut world, &towards(there), 8.0);
+        for (now, asked) in robot.posture(&world).into_iter().zip(there) {
+            assert!((now - asked).abs() < 2e-3, "{now} {asked}");
+        }
     }
 }
 
@@ -111,39 +111,64 @@ proptest! {
     /// than the engine's free one, angles of the wrong sign, and a start that is not the case's.
     #[test]
     fn the_palm_is_where_kinematics_has_it(q1 in -1.3..3.1_f64, q2 in 0.1..2.2_f64, flexion in 0.0..1.5_f64) {
-        let robot = robot();
-        let world = robot.world(&setup([q1, q2, flexion, flexion], FAR));
-        let pose = PlanarArm::new(robot.body()).place([q1, q2]);
-        let palm = robot.palm(&world);
-        let middle = 0.13 + 0.065 / 2.0;
-        let expected = pose.elbow + pose.fore_direction * middle;
-        prop_assert!((palm.origin - expected.push(0.0)).norm() < 3e-6);
-        let side = Vector3::new(-pose.fore_direction.y, pose.fore_direction.x, 0.0);
-        prop_assert!((palm.rotation.column(1) - side).norm() < 3e-6);
-        for (now, asked) in robot.posture(&world).into_iter().zip([q1, q2, flexion, flexion]) {
-            prop_assert!((now - asked).abs() < 3e-6);
+        for robot in robots(Fingers::Virtual) {
+            let posture = [q1, q2, flexion, flexion];
+            let mut world = robot.world(&setup(posture, FAR));
+            // Then the angles are those that the engine has.
+            robot.step(&mut world, &towards(posture));
+            let pose = PlanarArm::new(robot.body()).place([q1, q2]);
+            let palm = robot.palm(&world);
+            let middle = 0.13 + 0.065 / 2.0;
+            let expected = pose.elbow + pose.fore_direction * middle;
+            prop_assert!((palm.origin - expected.push(0.0)).norm() < 3e-6);
+            let side = Vector3::new(-pose.fore_direction.y, pose.fore_direction.x, 0.0);
+            prop_assert!((palm.rotation.column(1) - side).norm() < 3e-6);
+            for (now, asked) in robot.posture(&world).into_iter().zip(posture) {
+                prop_assert!((now - asked).abs() < 3e-6);
+            }
         }
     }
 
-    /// Torques beyond the ends of the joint ranges do not carry a joint past them, and within them
-    /// move it at T / `K_D`. Catches a missing stop, and a torque of the wrong unit or sign.
     #[test]
     fn torques_stop_at_the_joint_ranges(shares in prop::array::uniform4(-1.0..1.0_f64)) {
-        let robot = robot();
-        let mut world = robot.world(&setup(robot.denormalised([0.5; 4]), FAR));
-        let grip = &robot.body().grip;
-        let limits = [grip.arm_muscles, grip.arm_muscles, grip.hand_muscles, grip.hand_muscles];
-        let torques = std::array::from_fn(|i| shares[i] * limits[i].torque_max);
-        let before = robot.posture(&world);
-        run(&robot, &mut world, &torques.map(MuscleCommand::Torque), 0.1);
-        for (i, now) in robot.posture(&world).into_iter().enumerate() {
-            let expected = before[i] + 0.1 * torques[i] / limits[i].kd;
-            prop_assert!((now - expected).abs() < 4e-3, "joint {i}: {now} {expected}");
+        stops_at_the_joint_ranges(&robot(), shares);
+    }
+}
+
+/// The same in every engine.
+#[test]
+fn the_largest_torques_stop_at_the_joint_ranges() {
+    for robot in all_robots() {
+        for share in [1.0, -1.0] {
+            stops_at_the_joint_ranges(&robot, [share; 4]);
         }
-        run(&robot, &mut world, &torques.map(MuscleCommand::Torque), 8.0);
-        for (now, [low, high]) in robot.posture(&world).into_iter().zip(robot.ranges()) {
-            prop_assert!(now > low - 0.01 && now < high + 0.01, "{now} not in [{low}, {high}]");
-        }
+    }
+}
+
+/// Torques beyond the ends of the joint ranges do not carry a joint past them, and within them
+/// move it at T / `K_D`. Catches a missing stop, and a torque of the wrong unit or sign.
+fn stops_at_the_joint_ranges(robot: &Robot, shares: [f64; 4]) {
+    let mut world = robot.world(&setup(robot.denormalised([0.5; 4]), FAR));
+    let grip = &robot.body().grip;
+    let limits = [
+        grip.arm_muscles,
+        grip.arm_muscles,
+        grip.hand_muscles,
+        grip.hand_muscles,
+    ];
+    let torques = std::array::from_fn(|i| shares[i] * limits[i].torque_max);
+    let before = robot.posture(&world);
+    run(robot, &mut world, &torques.map(MuscleCommand::Torque), 0.1);
+    for (i, now) in robot.posture(&world).into_iter().enumerate() {
+        let expected = before[i] + 0.1 * torques[i] / limits[i].kd;
+        assert!((now - expected).abs() < 4e-3, "joint {i}: {now} {expected}");
+    }
+    run(robot, &mut world, &torques.map(MuscleCommand::Torque), 8.0);
+    for (now, [low, high]) in robot.posture(&world).into_iter().zip(robot.ranges()) {
+        assert!(
+            now > low - 0.01 && now < high + 0.01,
+            "{now} not in [{low}, {high}]"
+        );
     }
 }
 
@@ -151,7 +176,7 @@ proptest! {
 /// impulses that are read per substep, and forces divided by the wrong time.
 #[test]
 fn the_support_carries_the_weight() {
-    for robot in [robot(), reference()] {
+    for robot in robots(Fingers::Virtual) {
         for radius in [0.012, 0.03] {
             let ball = Ball {
                 centre: [0.0, 0.3],
@@ -229,22 +254,23 @@ fn the_support_touches_the_object_alone() {
 /// stand where the template has them, along x, and kick a ball there.
 #[test]
 fn the_first_step_meets_no_phantom() {
-    let robot = robot();
-    let ball = Ball {
-        centre: [0.2, 0.01],
-        radius: 0.03,
-    };
-    let posture = robot.open_hand([1.5, 0.5]);
-    let mut world = robot.world(&Setup {
-        support: true,
-        ..setup(posture, ball)
-    });
-    for _ in 0..5 {
-        robot.step(&mut world, &towards(posture));
-        assert!(!robot.touch(&world).any());
-        assert_eq!(robot.penetration(&world), 0.0);
+    for robot in all_robots() {
+        let ball = Ball {
+            centre: [0.2, 0.01],
+            radius: 0.03,
+        };
+        let posture = robot.open_hand([1.5, 0.5]);
+        let mut world = robot.world(&Setup {
+            support: true,
+            ..setup(posture, ball)
+        });
+        for _ in 0..5 {
+            robot.step(&mut world, &towards(posture));
+            assert!(!robot.touch(&world).any());
+            assert_eq!(robot.penetration(&world), 0.0);
+        }
+        assert!((robot.object(&world) - Vector3::new(0.2, 0.01, 0.0)).norm() < 1e-4);
     }
-    assert!((robot.object(&world) - Vector3::new(0.2, 0.01, 0.0)).norm() < 1e-4);
 }
 
 /// The obstacle stops arm and hand and says so; the object cannot pass it either.
@@ -275,7 +301,7 @@ fn the_obstacle_stops_the_arm() {
 /// its past. Catches buffers that a reset leaves warm, and engine state that is not written.
 #[test]
 fn copies_continue_bit_for_bit() {
-    for robot in [robot(), independent(), reference()] {
+    for robot in all_robots() {
         let arm = [0.2, 0.8];
         let mut world = ball_at_palm(&robot, arm, 0.02);
         let drive = reflex(&robot, arm);

@@ -40,7 +40,8 @@ pub enum Shape {
         /// Half the edges along those axes \[m\].
         half_extents: Vector3<f64>,
     },
-    /// A horizontal, checkered rectangle, seen from above. Shadows fall on it.
+    /// A horizontal, checkered rectangle, seen from above. Shadows fall on it; a solid that reaches
+    /// through it casts that of its part below, too.
     Ground {
         /// Height of the plane \[m\].
         height: f64,

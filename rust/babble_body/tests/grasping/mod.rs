@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test file uses some of it")]
 
+use babble_body::Body;
+use babble_body::config::{EngineName, Fingers};
 use babble_body::robot::{Ball, MuscleCommands, Posture, Robot, Setup, World, towards};
 
 pub(crate) const DT: f64 = 0.005;
@@ -10,6 +12,31 @@ pub(crate) const FAR: Ball = Ball {
     centre: [0.0, -2.0],
     radius: 0.03,
 };
+
+/// The engines of this build.
+pub(crate) const ENGINES: &[EngineName] = &[
+    EngineName::Tree,
+    #[cfg(feature = "rapier")]
+    EngineName::Rapier,
+];
+
+/// The robot of a changed body.
+pub(crate) fn with(change: impl FnOnce(&mut Body)) -> Robot {
+    let mut body = Body::paper();
+    change(&mut body);
+    Robot::new(&body, DT)
+}
+
+/// The robot with some fingers in every engine.
+pub(crate) fn robots(fingers: Fingers) -> Vec<Robot> {
+    let robot = |&engine: &EngineName| {
+        with(|body| {
+            body.engine = engine;
+            body.grip.fingers = fingers;
+        })
+    };
+    ENGINES.iter().map(robot).collect()
+}
 
 /// A world without support and obstacle.
 pub(crate) fn setup(posture: Posture, ball: Ball) -> Setup {

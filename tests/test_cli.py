@@ -19,7 +19,7 @@ from gym_babble import (
     scenarios,
 )
 from gym_babble.cli import main
-from gym_babble.envs.registry import ENVIRONMENTS
+from gym_babble.envs.registry import ENVIRONMENTS, TASKS
 from gym_babble.study import learning
 from gym_babble.study.ppo import train_ppo
 from gym_babble.study.tasks import GRASP, REACH
@@ -113,10 +113,16 @@ def test_info_tells_the_spec(run, run_json, row):
     assert sum(len(entry["labels"]) for entry in senses) == flat.shape[0]
     assert all(entry["unit"] for entry in described["senses"])
     assert described["control"] == row.options["control"]
+    task = TASKS[row.task]
+    assert [option["name"] for option in described["options"]] == list(task.defaults)
+    assert [one["name"] for one in described["protocols"]] == list(task.protocols)
     code, printed, _ = run("info", row.id)
     assert code == 0
     assert all(entry["name"] in printed for entry in described["senses"])
-    assert len(printed.splitlines()) < 80  # A map of neurons is one row.
+    assert all(option["name"] in printed for option in described["options"])
+    assert "rendered pictures [pixel]" in printed.replace("\n", " ")
+    assert all(part["name"] in printed for part in described["case_parts"])
+    assert len(printed.splitlines()) < 160  # A map of neurons is one row.
 
 
 @pytest.mark.parametrize(

@@ -6,15 +6,16 @@ from typing import Annotated, Literal
 import typer
 
 from gym_babble.agents.loading import load_agent
-from gym_babble.cli.arguments import AgentName, EnvId, OwnConfig, Seed
+from gym_babble.cli.arguments import AgentName, EnvId, OwnConfig, Seed, one_of
 from gym_babble.cli.output import check_folder_of, name_files, say
 from gym_babble.envs.registry import TASKS
 from gym_babble.viz.film import record, save_film
 
 __all__ = ["render"]
 
-# Both tasks have the same cameras.
-CAMERA = next(option for option in TASKS["reach"].options if option.name == "camera")
+(CAMERAS,) = {
+    option.values for task in TASKS.values() for option in task.options if option.name == "camera"
+}
 
 
 def render(
@@ -25,7 +26,7 @@ def render(
         Literal["png", "gif", "mp4"], typer.Option("--format", help="Format of the film.")
     ] = "gif",
     seed: Seed = 0,
-    camera: Annotated[str, typer.Option(help=CAMERA.summary)] = CAMERA.default,
+    camera: Annotated[str, typer.Option(help="Camera.", **one_of(CAMERAS))] = "third_person",
     size: Annotated[
         int, typer.Option(min=16, max=4096, help="Width and height of a picture [pixel].")
     ] = 360,

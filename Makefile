@@ -20,13 +20,13 @@ PEERS := .venv-bench
 export PYO3_PYTHON := $(CURDIR)/$(BIN)/python
 
 RUST_VERSION := $(shell sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
-NOT_IN_EXTENSION := tests benches examples proptest-regressions snapshots
+NOT_IN_EXTENSION := babble_golden tests benches examples proptest-regressions snapshots
 EXTENSION_SOURCES := Cargo.toml Cargo.lock $(shell find rust -type f -not -name '*.md' \
 	$(foreach folder,$(NOT_IN_EXTENSION),-not -path '*/$(folder)/*'))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-rust test-python slow soak fuzz lint lint-rust lint-python lint-workflows deny golden-native \
-	frameworks bench microbench constraints audit-export clean
+.PHONY: help setup demo test test-rust test-python slow soak fuzz golden-native lint lint-rust \
+	lint-python lint-workflows deny bench microbench frameworks constraints audit-export clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -45,10 +45,10 @@ test-rust:
 test-python: setup
 	$(BIN)/python -m pytest
 
-slow: setup ## Run the slow tests (some minutes)
+slow: setup ## Run the slow tests (one minute)
 	$(BIN)/python -m pytest -m slow
 
-soak: setup ## Play both tasks at random, ten million steps each, in Rust and through Python (an hour)
+soak: setup ## Play both tasks at random, ten million steps each, in Rust and Python (45 minutes)
 	cargo test --release --test soak -- --ignored --nocapture
 	$(BIN)/python -m pytest -m soak -s
 

@@ -42,7 +42,7 @@ def recall(agent: HebbGrasping, diameter: float, seed: int) -> np.ndarray:
     envs = gym.make_vec("BabbleGrasp-v0", num_envs=len(cases))
     senses, _ = envs.reset(seed=0, options={"scenario": cases})
     recalled = agent.decide(senses["eye"], senses["fovea"])
-    low, high = BabbleGraspEnv().choices.ranges[:2].T
+    low, high = BabbleGraspEnv().interface.quantities["ranges"][:2].T
     arms = low + recalled[:, :2] * (high - low)
     objects = np.array([case["object"] for case in cases])
     arm = Config().body.arm

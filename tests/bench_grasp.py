@@ -23,7 +23,9 @@ HELD = {"obs": "goal", "reward": "sparse", "control": "posture", "max_episode_st
 
 def holding(env):
     """The action that holds the object of `CASE`."""
-    return posture(env, at(env, CASE["object"], CASE["diameter"]), env.unwrapped.choices.reflex)
+    return posture(
+        env, at(env, CASE["object"], CASE["diameter"]), env.unwrapped.interface.quantities["reflex"]
+    )
 
 
 def test_step_through_make_with_the_arm_free(benchmark):

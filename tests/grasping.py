@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from gym_babble import _core
+
 OPEN = (0.0, 0.0)
 INTO_HAND_M = 0.015
 """How much deeper in the hand than against the palm the object is wanted: it is pressed there."""
@@ -13,14 +15,16 @@ INTO_HAND_M = 0.015
 
 def posture(env: Any, arm: Any, hand: Any) -> Any:
     """The action of `posture` control for angles of arm and hand [rad]."""
-    low, high = env.unwrapped.choices.ranges.T
+    low, high = env.unwrapped.interface.quantities["ranges"].T
     share = (np.array([*arm, *hand]) - low) / (high - low)
     return np.clip(2 * share - 1, -1, 1).astype(np.float32)
 
 
 def at(env: Any, place: Any, diameter: float) -> Any:
     """Shoulder and elbow [rad] that bring the palm to a place [m]."""
-    found = env.unwrapped.choices.task.grasp_posture(tuple(place), diameter / 2 - INTO_HAND_M)
+    found = _core.grasp_posture(
+        env.unwrapped.interface.task, tuple(place), diameter / 2 - INTO_HAND_M
+    )
     assert found is not None, place
     return found
 
@@ -29,7 +33,8 @@ def to_object(env: Any, info: dict[str, Any]) -> Any:
     """What the hand does in the running episode, whose last info this is."""
     case = env.unwrapped.scenario
     arm = at(env, case["object"], case["diameter"])
-    return posture(env, arm, env.unwrapped.choices.reflex if info["reach"] else OPEN)
+    reflex = env.unwrapped.interface.quantities["reflex"]
+    return posture(env, arm, reflex if info["reach"] else OPEN)
 
 
 def grasp(env: Any, **reset: Any) -> list[Any]:

@@ -15,7 +15,7 @@ class Ours:
     def __init__(self, task, config):
         self.core = (BabbleReachEnv if task == "reach" else BabbleGraspEnv)(
             config=config
-        ).choices.task
+        ).interface.task
         self.links = json.loads(self.core.robot())
         self.low, self.high = np.array([link["range"] for link in self.links]).T
         self.sense = np.array([-1 if link["clockwise"] else 1 for link in self.links])

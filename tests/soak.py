@@ -132,7 +132,7 @@ class Soak:
         mask = random.random(self._envs.num_envs) < 0.2
         mask[random.integers(len(mask))] = True
         case = random.choice(np.array(self._envs.get_attr("scenario"), dtype=object))
-        if self._envs.choices.obs != "goal":
+        if self._envs.interface.obs != "goal":
             case.pop("goal", None)
         parts = [name for name in case if random.random() < 0.7]
         options = {name: case[name] for name in parts}

@@ -150,7 +150,7 @@ def test_an_agent_keeps_the_body_it_learnt_on(tmp_path):
     config = {"profile": "icub", "reach": {"movement_s": 5.0}}
     HebbBabbling(BabbleReachEnv(control="pattern", config=config)).learn(20).save(tmp_path / "a")
     again = HebbBabbling.load(tmp_path / "a")
-    config = json.loads(again._choices.task.config())
+    config = json.loads(again.interface.task.config())
     assert (config["profile"], config["reach"]["movement_s"]) == ("icub", 5.0)
 
 

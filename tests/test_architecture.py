@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import re
 import subprocess
@@ -11,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from imports import circles, merged, python_graph, rust_graph
+
+from gym_babble.envs.registry import ENVIRONMENTS, TASKS
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -36,8 +39,19 @@ OWNERS = {
 
 # What steps, shows and stores any task, and the words that belong to one of them.
 SHARED = {
-    "rust/babble_env/src": ("batch", "outcome", "picture", "pool", "snapshot", "spec", "task"),
-    "gym_babble/envs": ("choices", "one", "single", "vector", "window"),
+    "rust/babble_env/src": (
+        "batch",
+        "case",
+        "erased",
+        "option_spec",
+        "outcome",
+        "picture",
+        "executor",
+        "snapshot",
+        "spec",
+        "task",
+    ),
+    "gym_babble/envs": ("interface", "member", "registry", "single", "vector", "window"),
 }
 OF_ONE_TASK = re.compile(
     r"(?i)\w*(reach|grasp)\w*|\b(is|ever)_success\b|\b(obstacle|target|control|b1)\b"
@@ -136,6 +150,18 @@ def test_each_crate_that_simulates_turns_on_the_lints_of_clippy_toml(repository)
         assert name in kept_out
 
 
+def test_the_core_can_do_without_threads_and_engines(repository):
+    # As it is built for WebAssembly.
+    packages = [f"--package={name}" for name in MAY_KNOW if name != "babble_py"]
+    command = ["cargo", "tree", "--offline", "--no-default-features", "--edges=normal", *packages]
+    run = subprocess.run(
+        [*command, "--prefix=none"], cwd=repository, check=True, capture_output=True, text=True
+    )
+    names = {line.split()[0] for line in run.stdout.splitlines() if line}
+    assert names >= {"nalgebra", "serde"}
+    assert not {name for name in names if name.startswith(("rapier", "parry"))}
+
+
 def test_few_files_of_a_crate_use_each_other_in_a_circle(repository):
     found = [
         f"{source.parts[-3]}: {' '.join(sorted(circle))}"
@@ -161,6 +187,32 @@ def test_import_loads_nothing_heavy(capsys):
     with capsys.disabled():
         print(f"\nimport gym_babble, in a new interpreter: {time.perf_counter() - started:.2f} s")
     assert not HEAVY_MODULES & set(run.stdout.split())
+
+
+def strings_together(source: str) -> list[set[str]]:
+    """The strings of each tuple, list, set and dict that Python code writes out."""
+    literals = ast.Tuple | ast.List | ast.Set | ast.Dict
+    return [
+        {leaf.value for leaf in ast.walk(node) if isinstance(leaf, ast.Constant)}
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, literals)
+    ]
+
+
+def test_python_has_no_list_of_ids_or_of_an_options_values(repository):
+    ids = [{env.id for env in ENVIRONMENTS if env.task == task} for task in TASKS]
+    values = [{*option.values} for task in TASKS.values() for option in task.options]
+    # Two of something may well stand together for a reason of their own.
+    lists = [known for known in (*ids, *values) if len(known) > 2]
+    assert len(lists) > 4
+    found = [
+        (path.name, known)
+        for path in (repository / "gym_babble").rglob("*.py")
+        for strings in strings_together(path.read_text(encoding="utf-8"))
+        for known in lists
+        if known <= strings
+    ]
+    assert not found
 
 
 def test_the_package_has_few_files_at_its_top(repository):

@@ -342,25 +342,25 @@ ARGUMENTS = [
 REACH_ARGUMENTS = [
     ({"max_episode_steps": None}, "max_episode_steps"),
     ({"obs": "goal", "reward": "sparse", "settled": True}, "settled"),
-    ({"settled": "no"}, "settled = 'no'"),
+    ({"settled": "no"}, 'settled = "no"'),
 ]
 GRASP_ARGUMENTS = [
     ({"control": "pattern"}, "pattern.*delta_posture, posture, torque"),
     ({"region": "left"}, "left.*palm_side, full"),
     ({"region": "Full"}, "Full"),
     ({"region": None}, "region"),
-    ({"diameters": []}, "diameters_m.*at least one"),
+    ({"diameters": []}, "diameters = .. is not a list"),
     ({"diameters": 0.03}, "diameters = 0.03"),
     ({"diameters": ["thin"]}, "diameters"),
     ({"diameters": [None]}, "diameters"),
-    ({"diameters": [0.03, NAN]}, r"diameters.*nan.*\[0.005, 0.2\]"),
+    ({"diameters": [0.03, NAN]}, "diameters.*nan.*finite"),
     ({"diameters": [INF]}, "diameters.*inf"),
-    ({"diameters": [0.03, 0]}, r"diameters_m\[1\]: 0 is out of bounds.*\[0.005, 0.2\]"),
+    ({"diameters": [0.03, 0]}, r"diameters = .0.03,0. is not.*\[0.005, 0.2\]"),
     ({"diameters": [-0.03]}, "-0.03"),
     ({"diameters": [0.3]}, r"0.3.*\[0.005, 0.2\]"),
-    ({"any_diameter_between": "no"}, "any_diameter_between = 'no'"),
+    ({"any_diameter_between": "no"}, 'any_diameter_between = "no"'),
     ({"any_diameter_between": None}, "any_diameter_between"),
-    ({"enclosure_reflex": "no"}, "enclosure_reflex = 'no'"),
+    ({"enclosure_reflex": "no"}, 'enclosure_reflex = "no"'),
     ({"enclosure_reflex": 1}, "enclosure_reflex = 1"),
 ]
 ALL_ARGUMENTS = [

@@ -134,7 +134,9 @@ def test_mujoco_steps_the_robot_that_we_step(degrees):
     root = ET.fromstring(theirs["model"])  # noqa: S314 - our own
     assert len(root.findall("actuator/position")) == degrees
     env = BabbleGraspVectorEnv(1, config=config)
-    assert [theirs["reflex"][digit] for digit in ("thumb", "fingers")] == list(env.choices.reflex)
+    assert [theirs["reflex"][digit] for digit in ("thumb", "fingers")] == list(
+        env.interface.quantities["reflex"]
+    )
 
 
 def test_an_interrupted_run_goes_on(tmp_path, monkeypatch):

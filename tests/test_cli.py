@@ -19,7 +19,7 @@ from gym_babble import (
     scenarios,
 )
 from gym_babble.cli import main
-from gym_babble.envs.registration import ENVIRONMENTS
+from gym_babble.envs.registry import ENVIRONMENTS, TASKS
 from gym_babble.study import learning
 from gym_babble.study.ppo import train_ppo
 from gym_babble.study.tasks import GRASP, REACH
@@ -99,9 +99,10 @@ def test_list(run, run_json):
     _, printed, _ = run("list")
     # A limit that the core sets and a threshold that nobody knows are columns too.
     for row, line in zip(ENVIRONMENTS, printed.splitlines()[2:], strict=True):
-        steps = {"pattern": "1"}.get(row.control, "240")
+        steps = {"pattern": "1"}.get(row.options["control"], "240")
         solved_at = [] if row.reward_threshold is None else [f"{row.reward_threshold:g}"]
-        assert line.split() == [row.id, row.obs, row.control, row.reward, steps, *solved_at]
+        chosen = [row.options[name] for name in ("obs", "control", "reward")]
+        assert line.split() == [row.id, *chosen, steps, *solved_at]
 
 
 @pytest.mark.parametrize("row", ENVIRONMENTS, ids=lambda row: row.id)
@@ -111,11 +112,17 @@ def test_info_tells_the_spec(run, run_json, row):
     flat = gym.make(row.id, obs="flat", reward="sparse").observation_space
     assert sum(len(entry["labels"]) for entry in senses) == flat.shape[0]
     assert all(entry["unit"] for entry in described["senses"])
-    assert described["control"] == row.control
+    assert described["control"] == row.options["control"]
+    task = TASKS[row.task]
+    assert [option["name"] for option in described["options"]] == list(task.defaults)
+    assert [one["name"] for one in described["protocols"]] == list(task.protocols)
     code, printed, _ = run("info", row.id)
     assert code == 0
     assert all(entry["name"] in printed for entry in described["senses"])
-    assert len(printed.splitlines()) < 80  # A map of neurons is one row.
+    assert all(option["name"] in printed for option in described["options"])
+    assert "rendered pictures [pixel]" in printed.replace("\n", " ")
+    assert all(part["name"] in printed for part in described["case_parts"])
+    assert len(printed.splitlines()) < 160  # A map of neurons is one row.
 
 
 @pytest.mark.parametrize(

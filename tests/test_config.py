@@ -205,7 +205,7 @@ def test_numbers_of_one_task_change_no_state_of_the_other():
 def test_a_config_reaches_the_simulation():
     env = BabbleReachEnv(config={"reach": {"control_period_s": 0.1}})
     assert env.metadata["render_fps"] == 10
-    assert BabbleReachEnv.metadata["render_fps"] == 20
+    assert BabbleReachEnv().metadata["render_fps"] == 20
     stiff = BabbleReachEnv(config={"body": {"muscles": {"kp": 200.0}}}, control="posture")
     soft = BabbleReachEnv(control="posture")
     options = {"start": (0.1, 0.2), "target": (0.2, 0.2), "obstacle": None}

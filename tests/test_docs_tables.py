@@ -16,8 +16,8 @@ from comparing import ALL_IDS, BATCHES, CONTROLS_OF, REGIONS, TASKS
 
 from gym_babble import _core
 from gym_babble.config import Config
-from gym_babble.envs import BabbleGraspEnv
-from gym_babble.envs.registration import ENVIRONMENTS
+from gym_babble.envs import BabbleGraspEnv, registry
+from gym_babble.envs.registry import ENVIRONMENTS
 
 DOCSTRINGS = {task: inspect.cleandoc(kind.__doc__) for task, kind in TASKS.items()}
 each_task = pytest.mark.parametrize("task", TASKS)
@@ -50,11 +50,12 @@ def bounds(text: str, widths: list[float]) -> list[float]:
 
 @each_task
 def test_the_table_of_senses_is_the_cores(task):
-    choices = TASKS[task]().choices
+    interface = TASKS[task]().interface
+    quantities = interface.quantities
     rows = table(DOCSTRINGS[task], "sense")
-    assert [row[0] for row in rows] == [entry.name for entry in choices.spec.senses]
-    ranges = choices.joint_range if task == "reach" else np.ptp(choices.ranges, axis=1)
-    for (name, size, low, high, unit), entry in zip(rows, choices.spec.senses, strict=True):
+    assert [row[0] for row in rows] == [entry.name for entry in interface.spec.senses]
+    ranges = quantities["joint_range"] if task == "reach" else np.ptp(quantities["ranges"], axis=1)
+    for (name, size, low, high, unit), entry in zip(rows, interface.spec.senses, strict=True):
         n = int(size)
         assert n == len(entry.labels), name
         for text, numbers in ((low, entry.low), (high, entry.high)):
@@ -80,18 +81,19 @@ def test_the_table_of_controls_is_the_cores(task):
     assert tuple(rows) == CONTROLS_OF[task]
     for control, (*joints, meaning) in rows.items():
         env = TASKS[task](control=control)
-        assert env.choices.spec.action.labels == tuple(joints)
+        assert env.interface.spec.action.labels == tuple(joints)
         assert env.action_space.shape == (len(joints),)
         assert f"`Box(-1, 1, ({len(joints)},), float32)`" in DOCSTRINGS[task]
         assert env.action_space.dtype == np.float32
         assert (env.action_space.low == -1).all()
         assert (env.action_space.high == 1).all()
         if control == "delta_posture":
-            assert f"±{np.degrees(env.choices.delta_posture):g}°" in meaning
+            delta = np.degrees(env.interface.quantities["delta_posture"])
+            assert f"±{delta:g}°" in meaning
         if control == "torque":
             assert torques(task) in meaning
         if control == "pattern":
-            low, high = env.choices.b_range
+            low, high = env.interface.quantities["b_range"]
             assert f"[{low:.2f}, {high:.2f}]".replace("0.", ".") in meaning
             reach, muscles = Config().reach, Config().body.muscles
             seconds = reach.movement_s + reach.settle_time_constants * muscles.kd / muscles.kp
@@ -136,7 +138,7 @@ def numbers_of_grasping(config):
     second = numbers.hold_steps * numbers.control_period_s
     yield "held the object without support for a second" if second == 1 else "another time"
     steps = {region: BabbleGraspEnv(region=region) for region in REGIONS}
-    steps = {name: env.choices.spec.max_episode_steps for name, env in steps.items()}
+    steps = {name: env.interface.spec.max_episode_steps for name, env in steps.items()}
     seconds = steps["palm_side"] * numbers.control_period_s
     yield f"{steps['palm_side']} steps ({seconds:g} s), {steps['full']} in region `full`"
     yield f"the config's {interval_of_diameters(numbers)} cm if not given"
@@ -150,7 +152,7 @@ def numbers_of_grasping(config):
     full = interval(numbers.full.radius_m, 100).replace("…", "–")
     yield f'`"full"`: {full} cm, {interval(numbers.full.polar_deg)}°, all postures'
     for region in (numbers.full, Config.profile_named("icub").grasp.full):
-        ranges = np.degrees(BabbleGraspEnv().choices.ranges[:2])
+        ranges = np.degrees(BabbleGraspEnv().interface.quantities["ranges"][:2])
         assert region.shoulder_deg[0] <= ranges[0, 0] < ranges[0, 1] <= region.shoulder_deg[1]
         assert region.elbow_deg[0] <= ranges[1, 0] < ranges[1, 1] <= region.elbow_deg[1]
 
@@ -161,7 +163,7 @@ def interval_of_diameters(numbers):
 
 @each_task
 def test_the_numbers_in_the_text_are_the_configs(task):
-    text = " ".join((DOCSTRINGS[task] + inspect.cleandoc(TASKS[task].__init__.__doc__)).split())
+    text = " ".join(DOCSTRINGS[task].split())
     config = Config()
     arm, hand = config.body.arm, config.body.hand
     stretched = hand.palm_m + sum(hand.finger_m)
@@ -192,7 +194,7 @@ def test_the_pages_table_of_regions_is_the_configs(repository):
         own, other = (getattr(numbers.palm_side, name) for numbers in (paper, icub))
         assert row == [f"{cell(own, '°')} ({cell(other, '°')})", "all its range"]
     assert limit == [
-        str(BabbleGraspEnv(region=region).choices.spec.max_episode_steps) for region in REGIONS
+        str(BabbleGraspEnv(region=region).interface.spec.max_episode_steps) for region in REGIONS
     ]
     small, large = (f"{100 * diameter:g}" for diameter in paper.diameters_m)
     assert f"Diameters are {small} or {large} cm" in text
@@ -201,7 +203,7 @@ def test_the_pages_table_of_regions_is_the_configs(repository):
 @each_task
 def test_reward_terms_facts_and_outcomes_are_the_cores(task):
     text = " ".join(DOCSTRINGS[task].split())
-    spec = TASKS[task]().choices.spec
+    spec = TASKS[task]().interface.spec
     assert f"terms {' + '.join(spec.reward_terms)}" in text
     assert f"`outcome` ({', '.join(spec.outcomes)})" in text
     assert set(spec.outcomes) < set(_core.outcomes())
@@ -214,11 +216,11 @@ def test_the_pages_options_and_facts_are_the_tasks(repository, task):
     page = (repository / "docs" / "environments.md").read_text(encoding="utf-8")
     rows = dict(table(page, "task"))
     options = re.findall(r"`(\w+)`", f"`{rows[task + 'ing']}`".replace("``", "`"))
-    assert tuple(options) == TASKS[task].choices_type.case_options
+    assert tuple(options) == tuple(part.name for part in registry.TASKS[task].case_parts)
     rewards = page.partition("## Rewards")[2].partition("\n## ")[0]
-    assert all(f"`{fact}`" in rewards for fact in TASKS[task]().choices.spec.facts)
+    assert all(f"`{fact}`" in rewards for fact in TASKS[task]().interface.spec.facts)
     threads = " ".join(page.split())
-    reach, grasp = (BATCHES[name].choices_type.envs_per_thread for name in TASKS)
+    reach, grasp = (registry.TASKS[name].envs_per_thread for name in TASKS)
     assert f"each {reach} environments of reaching, or {grasp} of grasping" in threads
 
 
@@ -228,8 +230,12 @@ def test_the_docs_table_of_ids_is_the_registrys(repository):
     assert [row[0] for row in rows] == list(ALL_IDS)
     for row, registered in zip(rows, ENVIRONMENTS, strict=True):
         env_id, obs, control, reward, limit, threshold = row
-        assert (env_id, obs, control) == (registered.id, registered.obs, registered.control)
-        assert reward.startswith(registered.reward)
+        assert (env_id, obs, control) == (
+            registered.id,
+            registered.options["obs"],
+            registered.options["control"],
+        )
+        assert reward.startswith(registered.options["reward"])
         assert limit == time_limit(registered)
         if registered.reward_threshold is None:
             assert threshold == "none"
@@ -241,7 +247,7 @@ def time_limit(registered):
     """As the docs write it."""
     if registered.task == "grasp":
         steps = [
-            gymnasium.make(registered.id, region=region).unwrapped.choices.spec.max_episode_steps
+            gymnasium.make(registered.id, region=region).unwrapped.interface.spec.max_episode_steps
             for region in REGIONS
         ]
         return f"{steps[0]} (`full`: {steps[1]})"
@@ -250,17 +256,16 @@ def time_limit(registered):
 
 @each_task
 def test_the_keywords_and_their_defaults_are_those_of_the_batch(task):
-    single = inspect.signature(TASKS[task].__init__).parameters
-    batch = inspect.signature(BATCHES[task].__init__).parameters
+    single = inspect.signature(TASKS[task]).parameters
+    batch = inspect.signature(BATCHES[task]).parameters
     assert {name: p.default for name, p in batch.items() if name in single} == {
         name: p.default for name, p in single.items()
     }
-    documented = re.findall(
-        r"^    (\w+): ", inspect.cleandoc(TASKS[task].__init__.__doc__), re.MULTILINE
-    )
-    assert set(documented) - {"ConfigError"} == set(single) - {"self"}
-    listed = " ".join(BATCHES[task].__doc__.split()).partition("obs, control")[2]
-    assert all(name in f"obs, control{listed}" for name in set(single) - {"self", "render_mode"})
+    options = registry.TASKS[task].defaults
+    assert {name: single[name].default for name in options} == options
+    assert set(single) - set(options) == {"render_mode", "config"}
+    for text in (TASKS[task].__doc__, BATCHES[task].__doc__):
+        assert re.findall(r"^ *- `(\w+)` \(`.*`\): ", text, re.MULTILINE) == list(options)
 
 
 def test_the_stub_has_the_extensions_names(repository):

@@ -12,6 +12,7 @@ from comparing import CONTROLS_OF, GRASP_IDS, REGIONS, assert_same, drawn_action
 from grasping import OPEN, at, grasp, posture, to_object
 from gymnasium.wrappers import TimeLimit
 
+from gym_babble import _core
 from gym_babble.config import Config
 from gym_babble.envs import BabbleGraspEnv, BabbleGraspVectorEnv
 from gym_babble.errors import ScenarioError
@@ -43,7 +44,7 @@ def test_a_hand_that_closes_around_the_object_succeeds(config, diameter):
     seen = grasp(env, seed=0, options={**CASE, "start": (-0.15, 1.2), "diameter": diameter})
     _, reward, terminated, truncated, info = seen[-1]
     assert (terminated, truncated, info["outcome"]) == (True, False, "success")
-    assert all(info[fact] for fact in env.choices.spec.facts)
+    assert all(info[fact] for fact in env.interface.spec.facts)
     assert info["reward_terms"]["success"] == 1
     assert reward > 0.9
     for step in seen[1:]:
@@ -76,7 +77,7 @@ def test_the_enclosure_term_pays_each_episode_at_most_once():
     arm = at(env, CASE["object"], CASE["diameter"])
     given, highest = [], 0.0
     for k in range(240):
-        hand = env.choices.reflex if k % 50 > 30 else OPEN
+        hand = env.interface.quantities["reflex"] if k % 50 > 30 else OPEN
         _, _, terminated, truncated, info = env.step(posture(env, arm, hand))
         given.append(info["reward_terms"]["enclosure"])
         highest = max(highest, sum(given))
@@ -150,7 +151,7 @@ def test_the_fovea_tells_sizes_apart_and_the_eye_places():
 
 def test_hand_and_arm_show_the_posture_and_stretch_what_is_asked():
     env = BabbleGraspEnv()
-    low, high = env.choices.ranges.T
+    low, high = env.interface.quantities["ranges"].T
     observation, _ = env.reset(options=CASE)
     shares = (np.array(CASE["start"]) - low[:2]) / (high - low)[:2]
     assert observation["arm"] == pytest.approx(shares, abs=1e-5)
@@ -158,7 +159,7 @@ def test_hand_and_arm_show_the_posture_and_stretch_what_is_asked():
     assert observation["stretch"] == pytest.approx([0] * 4, abs=1e-5)
     after = env.step([0, 0, 1, 1])[0]
     assert after["stretch"][2:] + after["hand"] * (high - low)[2:] == pytest.approx(
-        [env.choices.delta_posture] * 2, abs=1e-5
+        [env.interface.quantities["delta_posture"]] * 2, abs=1e-5
     )
     assert (after["hand"] > 0).all()
 
@@ -269,7 +270,7 @@ def test_max_episode_steps_of_make_is_a_wrappers_and_of_the_environment_its_own(
         assert np.all(observation["time"] == 1)
     # More than the region's own too.
     assert (
-        BabbleGraspEnv(max_episode_steps=900, region=region).choices.spec.max_episode_steps == 900
+        BabbleGraspEnv(max_episode_steps=900, region=region).interface.spec.max_episode_steps == 900
     )
 
 
@@ -307,7 +308,7 @@ def polar(point):
 def test_cases_lie_in_their_region_and_can_be_grasped(config, region):
     env = BabbleGraspEnv(config=config, region=region)
     numbers = getattr(Config.profile_named(config).grasp, region)
-    lower, upper = np.degrees(env.choices.ranges[:2].T)
+    lower, upper = np.degrees(env.interface.quantities["ranges"][:2].T)
     starts = np.clip([numbers.shoulder_deg, numbers.elbow_deg], lower[:, None], upper[:, None])
     env.reset(seed=0)
     cases = []
@@ -320,7 +321,10 @@ def test_cases_lie_in_their_region_and_can_be_grasped(config, region):
         assert numbers.polar_deg[0] <= direction <= numbers.polar_deg[1]
         for (low, high), angle in zip(starts, np.degrees(case["start"]), strict=True):
             assert low - 1e-9 <= angle <= high + 1e-9
-        assert env.choices.task.grasp_posture(case["object"], case["diameter"] / 2) is not None
+        assert (
+            _core.grasp_posture(env.interface.task, case["object"], case["diameter"] / 2)
+            is not None
+        )
         assert case["obstacle"] is None
     # Not always the same corner.
     assert np.ptp([polar(case["object"])[1] for case in cases]) > 30
@@ -441,7 +445,7 @@ def carried(env, goal, seed=0):
         action = to_object(env, seen[-1][-1])
         if held > 10:
             arm = at(env, goal, CASE["diameter"])
-            action = posture(env, arm, env.unwrapped.choices.reflex)
+            action = posture(env, arm, env.unwrapped.interface.quantities["reflex"])
         seen.append(env.step(action))
         held += seen[-1][-1]["held"]
         ended = seen[-1][2] or seen[-1][3]
@@ -531,7 +535,10 @@ def test_a_collision_in_the_goal_form_holds_everything_until_the_time_limit(cont
 def test_a_lost_object_in_the_goal_form_stays_lost():
     env = gymnasium.make(GRASP_IDS[2], control="posture")
     _, info = env.reset(seed=0, options={**CASE, "goal": (-0.15, 0.15)})
-    arm, reflex = at(env, CASE["object"], CASE["diameter"]), env.unwrapped.choices.reflex
+    arm, reflex = (
+        at(env, CASE["object"], CASE["diameter"]),
+        env.unwrapped.interface.quantities["reflex"],
+    )
     places = []
     for k in range(240):
         closing = info["reach"] and k < 110  # By then the support has gone.
@@ -634,8 +641,8 @@ def test_a_configs_numbers_reach_choices_rewards_and_spaces():
     muscles = {"grip": {"hand_muscles": {"torque_max": 2.0}, "reflex_deg": [10, 20]}}
     config = {"grasp": numbers, "body": muscles}
     env = BabbleGraspEnv(config=config, obs="goal", reward="sparse")
-    assert env.choices.delta_posture == pytest.approx(math.radians(9))
-    assert env.choices.reflex == pytest.approx(np.radians([10, 20]))
+    assert env.interface.quantities["delta_posture"] == pytest.approx(math.radians(9))
+    assert env.interface.quantities["reflex"] == pytest.approx(np.radians([10, 20]))
     assert env.metadata["render_fps"] == 10
     assert env.compute_reward(np.zeros(2), np.array([0.09, 0]), {}) == 0
     torque = BabbleGraspEnv(config=config, control="torque").observation_space["stretch"]

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from planar import Ours, turned
 
-from gym_babble import export_mjcf, export_urdf
+from gym_babble import _core, export_mjcf, export_urdf
 from gym_babble.envs import BabbleGraspEnv, BabbleReachEnv
 
 mujoco = pytest.importorskip("mujoco", reason="MuJoCo has no wheel for this platform")
@@ -141,7 +141,7 @@ def test_the_fingertips_are_where_the_arm_reaches(robot, shares):
         if solid["name"] in ("index_3", "middle_3", "ring_3", "little_3"):
             placed = data.body("forearm").xmat.reshape(3, 3) @ solid["b"]
             tips.append(data.body("forearm").xpos + placed)
-    elbow, tip = mine.core.place(tuple(q))
+    elbow, tip = _core.place(mine.core, tuple(q))
     assert data.body("forearm").xpos[:2] == pytest.approx(elbow, abs=1e-12)
     assert np.mean(tips, axis=0) == pytest.approx([*tip, 0], abs=1e-12)
 
@@ -248,7 +248,7 @@ def test_reachings_case_is_the_environments():
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     mujoco.mj_forward(model, data)
-    start = env.choices.task.place(tuple(data.qpos))[1]
+    start = _core.place(env.interface.task, tuple(data.qpos))[1]
     assert start == pytest.approx(env.scenario["start"], abs=1e-12)
     assert data.site("target").xpos.tolist() == [*env.scenario["target"], 0]
     x, y, radius = env.scenario["obstacle"]

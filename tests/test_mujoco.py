@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 from planar import Ours, turned
 
-from gym_babble import export_mjcf
+from gym_babble import _core, export_mjcf
 from gym_babble.envs import BabbleGraspEnv, BabbleReachEnv
 
 mujoco = pytest.importorskip("mujoco", reason="MuJoCo has no wheel for this platform")
@@ -60,7 +62,7 @@ class Pair:
 
     def sense(self, name):
         at = 0
-        for entry in self.env.choices.spec.senses:
+        for entry in self.env.interface.spec.senses:
             if entry.name == name:
                 flat = self.observation
                 flat = flat["observation"] if isinstance(flat, dict) else flat
@@ -180,7 +182,7 @@ def test_a_collision_is_one_in_mujoco():
     env, mine, hit = BabbleReachEnv(control="posture"), Ours("reach", "paper"), 0
     for seed in range(12):
         observation, _ = env.reset(seed=seed)
-        goal = np.array(mine.core.posture_at(env.scenario["target"]))
+        goal = np.array(_core.posture_at(mine.core, env.scenario["target"]))
         action = (2 * (goal - mine.low) / (mine.high - mine.low) - 1).astype(np.float32)
         ended, info = False, {}
         while not ended:
@@ -216,7 +218,7 @@ def held_in_mujoco(diameter, seed):
     palm = np.array([0.17, 0.01 + diameter / 2, 0])
     data.qpos[model.nu : model.nu + 3] = elbow + turned(palm, angle) - data.body("object").xpos
     names = [link["joint"] for link in mine.links[2:]]
-    thumb, finger = mine.core.reflex
+    thumb, finger = json.loads(mine.core.quantities())["reflex"]
     data.ctrl[2:] = [thumb if name.startswith("thumb") else finger for name in names]
     mujoco.mj_step(model, data, 400)
     model.geom("support").conaffinity = 0

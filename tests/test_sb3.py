@@ -22,7 +22,7 @@ from stable_baselines3.common.vec_env import (
 )
 
 from gym_babble import HebbBabbling, scenarios
-from gym_babble.envs.registration import ENVIRONMENTS
+from gym_babble.envs.registry import ENVIRONMENTS
 from gym_babble.errors import ActionError, ConfigError
 from gym_babble.sb3 import BabbleVecEnv
 
@@ -154,7 +154,10 @@ class OneOf:
 
     def __init__(self, env, i):
         self.unwrapped = self
-        self.choices, self.scenario = env.get_attr("choices", i)[0], env.get_attr("scenario", i)[0]
+        self.interface, self.scenario = (
+            env.get_attr("interface", i)[0],
+            env.get_attr("scenario", i)[0],
+        )
 
 
 def test_a_grasp_succeeds_in_the_batch_and_its_facts_are_told():
@@ -203,7 +206,7 @@ def test_other_autoreset_modes_are_refused():
 def test_attributes_and_methods():
     env = BabbleVecEnv("BabbleReach-v0", 3)
     env.reset()
-    assert env.get_attr("choices")[0].control == "delta_posture"
+    assert env.get_attr("interface")[0].options["control"] == "delta_posture"
     assert env.get_attr("observation_space", 1) == [env.observation_space]
     assert env.has_attr("scenario")
     assert not env.has_attr("absent")

@@ -9,7 +9,10 @@ import pytest
 from gym_babble.cli import main
 
 FENCED = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
-PAGES = ("README.md", *(f"docs/{name}.md" for name in ("baselines", "environments", "export")))
+PAGES = (
+    "README.md",
+    *(f"docs/{name}.md" for name in ("baselines", "environments", "export")),
+)
 
 
 def blocks(repository, page, *languages):
@@ -32,9 +35,10 @@ def test_every_page_with_python_is_run(repository):
 @pytest.mark.parametrize("page", PAGES)
 def test_the_python_of_a_page_runs(repository, page, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
-    for config in blocks(repository, page, "toml"):
-        name = re.match(r"# (\S+): ", config)[1]
-        (tmp_path / name).write_text(config, encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    for code in blocks(repository, page, "toml", "python"):
+        if name := re.match(r"# (\S+\.(?:toml|py)): ", code):
+            (tmp_path / name[1]).write_text(code, encoding="utf-8")
     names = {"__name__": "snippet"}
     with warnings.catch_warnings():
         warnings.simplefilter("error")

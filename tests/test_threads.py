@@ -107,22 +107,22 @@ def foreseeing(n):
 
 # Each would take 10 s and more.
 FOREVER = {
-    "make": lambda: lambda: _core.Batch(BabbleGraspEnv().choices.task, 200_000),
+    "make": lambda: lambda: _core.Batch(BabbleGraspEnv().interface.task, 200_000),
     "learn": lambda: learning(HebbBabbling, 100_000),
     "core learn": lambda: (
         lambda: _core.Hebb(_core.Hebb.variant_config("paper"), 0, False, 1).learn(
-            BabbleReachEnv().choices.task, 100_000
+            BabbleReachEnv().interface.task, 100_000
         )
     ),
     "learn to grasp": lambda: learning(HebbGrasping, 2_000),
     "core learn to grasp": lambda: (
         lambda: _core.GraspHebb(_core.GraspHebb.default_config(), 0, 2).learn(
-            BabbleGraspEnv().choices.task, 2_000
+            BabbleGraspEnv().interface.task, 2_000
         )
     ),
     "table1": lambda: lambda: scenarios("table1", 100_000),
     "oracle": lambda: foreseeing(20_000),
-    "hold": lambda: lambda: BabbleGraspEnv().choices.task.hold(0.05, 2_000, 2),
+    "hold": lambda: lambda: _core.hold(BabbleGraspEnv().interface.task, 0.05, 2_000, 2),
 }
 
 

@@ -1,6 +1,6 @@
 //! Configs: refused by name, or tasks can be made of them.
 
-use babble_env::{Config, EnvError, GraspOptions, GraspTask, Options, ReachTask, Task};
+use babble_env::{Config, EnvError, GraspOptions, GraspTask, ReachOptions, ReachTask, Task};
 
 /// A config in TOML or in JSON. Whether it is one.
 pub fn config(data: &[u8]) -> bool {
@@ -25,7 +25,7 @@ fn used(config: &Config) {
     let json = config.to_json().expect("JSON");
     let again = Config::from_json(&json).expect("a config that was written is one");
     assert_eq!(&again, config);
-    let reach = ReachTask::new(config.clone(), Options::default()).expect("a task");
+    let reach = ReachTask::new(config.clone(), ReachOptions::default()).expect("a task");
     sound(&reach);
     assert!(reach.settle_steps() <= 120_000);
     match GraspTask::new(config.clone(), GraspOptions::default()) {

@@ -5,7 +5,7 @@ use std::sync::{Arc, LazyLock};
 use babble_env::picture::View;
 use babble_env::task::State;
 use babble_env::{
-    Autoreset, Batch, Config, Control, EnvError, GraspOptions, GraspTask, Options, ReachTask,
+    Autoreset, Batch, Config, Control, EnvError, GraspOptions, GraspTask, ReachOptions, ReachTask,
     Reward, Task,
 };
 use xxhash_rust::xxh3::xxh3_64;
@@ -50,13 +50,13 @@ fn reward(goal: bool) -> Reward {
 /// The task of reaching that a byte stands for.
 pub fn reaching(choice: u8) -> ReachTask {
     let goal = choice & 4 != 0;
-    let options = Options {
+    let options = ReachOptions {
         control: CONTROLS[usize::from(choice % 4)],
         goal,
         reward: reward(goal),
         max_episode_steps: 20,
         record: choice & 8 != 0,
-        ..Options::default()
+        ..ReachOptions::default()
     };
     let profile = if choice & 16 == 0 { "paper" } else { "icub" };
     ReachTask::new(Config::profile(profile).expect("a profile"), options).expect("a task")

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol
 
 import gymnasium
 import numpy as np
 from gymnasium.vector import VectorEnv
 
-from gym_babble.envs.choices import Choices
+from gym_babble.envs.interface import Interface
+from gym_babble.envs.registry import task_entry
 from gym_babble.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -20,13 +21,12 @@ if TYPE_CHECKING:
 __all__ = [
     "Agent",
     "EnvLike",
-    "choices_of",
     "flat_senses",
+    "interface_of",
     "merge",
     "processors",
 ]
 
-C = TypeVar("C", bound=Choices)
 
 EnvLike = Any
 """An id, or an environment: Gymnasium's, vector, or stable-baselines3's VecEnv."""
@@ -46,8 +46,8 @@ class Agent(Protocol):
         ...
 
 
-def choices_of(env: EnvLike, kind: type[C]) -> C:
-    """What an environment of a task was made with.
+def interface_of(env: EnvLike, task: str) -> Interface:
+    """Options, spec and spaces of an environment of a task.
 
     Raises:
         ConfigError: It is not an environment of this package for that task.
@@ -55,13 +55,13 @@ def choices_of(env: EnvLike, kind: type[C]) -> C:
     if isinstance(env, str):
         env = gymnasium.make(env)
     if isinstance(env, gymnasium.Env | VectorEnv):
-        found = getattr(env.unwrapped, "choices", None)
+        found = getattr(env.unwrapped, "interface", None)
     elif hasattr(env, "get_attr"):
-        found = env.get_attr("choices")[0]
+        found = env.get_attr("interface")[0]
     else:
-        found = getattr(env, "choices", None)
-    if not isinstance(found, kind):
-        raise ConfigError(f"{env!r} is not a Babble environment for {kind.task_name}")
+        found = getattr(env, "interface", None)
+    if not isinstance(found, Interface) or found.entry.name != task:
+        raise ConfigError(f"{env!r} is not a Babble environment for {task_entry(task).title}")
     return found
 
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from gym_babble import _core
-from gym_babble.agents.base import EnvLike, choices_of, flat_senses, merge, processors
-from gym_babble.envs.choices import check_seed, check_whole
-from gym_babble.envs.grasp import BabbleGraspEnv, GraspChoices
+from gym_babble.agents.base import EnvLike, flat_senses, interface_of, merge, processors
+from gym_babble.envs.grasp import BabbleGraspEnv
+from gym_babble.envs.interface import check_seed, check_whole
 from gym_babble.envs.spaces import Spec
 from gym_babble.errors import AgentFileError, ConfigError
 from gym_babble.progress import track
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from numpy.typing import NDArray
+
+    from gym_babble.envs.interface import Interface
 
 __all__ = ["BABBLE_S", "GraspRandom", "GraspScripted", "HebbGrasping"]
 
@@ -45,17 +47,17 @@ class GraspAgent(ABC):
     """
 
     def __init__(self, env: EnvLike) -> None:
-        self._choices = choices_of(env, GraspChoices)
-        self._columns = dict(Spec.of(self._choices.task).slices)
-        if self._choices.control == "torque":
+        self._interface = interface_of(env, "grasp")
+        self._columns = dict(Spec.of(self._interface.task).slices)
+        if self._interface.options["control"] == "torque":
             raise ConfigError(
                 "control = 'torque': this agent plans postures; use posture or delta_posture"
             )
 
     @property
-    def choices(self) -> GraspChoices:
+    def interface(self) -> Interface:
         """What the environment of this agent was made with."""
-        return self._choices
+        return self._interface
 
     @abstractmethod
     def plan(self, senses: NDArray[np.float32]) -> NDArray[np.float64]:
@@ -110,10 +112,10 @@ class GraspAgent(ABC):
         posture: NDArray[np.float64],
         touched: NDArray[np.bool_],
     ) -> NDArray[np.float32]:
-        low, high = self._choices.ranges.T
+        low, high = self._interface.quantities["ranges"].T
         open_hand = np.concatenate([posture[:, :2], np.broadcast_to(low[2:], (len(posture), 2))], 1)
         wanted = np.where(touched[:, None], posture, open_hand)
-        if self._choices.control == "posture":
+        if self._interface.options["control"] == "posture":
             actions = 2.0 * (wanted - low) / (high - low) - 1.0
         else:
             share = np.concatenate(
@@ -121,7 +123,7 @@ class GraspAgent(ABC):
             )
             # The equilibrium point is angle plus stretch.
             now = low + share * (high - low) + senses[:, self._columns["stretch"]]
-            actions = (wanted - now) / self._choices.delta_posture
+            actions = (wanted - now) / self._interface.quantities["delta_posture"]
         clipped: NDArray[np.float32] = np.clip(actions, -1.0, 1.0).astype(np.float32)
         return clipped
 
@@ -191,7 +193,7 @@ class HebbGrasping(GraspAgent):
             chunks.append(babbles % BABBLES_A_CALL)
         with self._hebb:
             for chunk in track(chunks, "babbling", total=babbles, show=progress_bar):
-                self._hebb.learn(self._choices.task, chunk)
+                self._hebb.learn(self._interface.task, chunk)
                 if callback is not None and callback(self) is False:
                     break
         return self
@@ -209,11 +211,12 @@ class HebbGrasping(GraspAgent):
     def plan(self, senses: NDArray[np.float32]) -> NDArray[np.float64]:
         """Shoulder, elbow, and flexions of thumb and finger (n, 4) [rad], for flat senses."""
         recalled = self.decide(senses[:, self._columns["eye"]], senses[:, self._columns["fovea"]])
-        low, high = self._choices.ranges[:2].T
+        low, high = self._interface.quantities["ranges"][:2].T
         arm = low + recalled[:, :2] * (high - low)
         # A hand around the object would press with no force at its own posture.
         flexion = np.radians(90.0 - recalled[:, 2:] + self.config["squeeze_deg"])
-        return np.concatenate([arm, np.minimum(flexion, self._choices.reflex)], axis=1)
+        reflex = self._interface.quantities["reflex"]
+        return np.concatenate([arm, np.minimum(flexion, reflex)], axis=1)
 
     def recall_arm(self, eye: NDArray[np.float32]) -> NDArray[np.float32]:
         """Activity of the arm's map (21, 21), rows elbow, columns shoulder, for an eye (2,)."""
@@ -225,7 +228,7 @@ class HebbGrasping(GraspAgent):
 
     def save(self, path: str | Path) -> None:
         """Writes the agent: weights as safetensors, all else as JSON in its metadata."""
-        Path(path).write_bytes(self._hebb.save(self._choices.task.config()))
+        Path(path).write_bytes(self._hebb.save(self._interface.task.config()))
 
     @classmethod
     def load(
@@ -300,24 +303,24 @@ class GraspScripted(GraspAgent):
 
     def plan(self, senses: NDArray[np.float32]) -> NDArray[np.float64]:
         """Shoulder, elbow, and flexions of thumb and finger (n, 4) [rad], for flat senses."""
-        ranges = self._choices.ranges
+        ranges = self._interface.quantities["ranges"]
         eyes = senses[:, self._columns["eye"]]
         arms = [self._arm(eye.tolist()) or ranges[:2].mean(axis=1).tolist() for eye in eyes]
-        hands = np.broadcast_to(self._choices.reflex, (len(senses), 2))
+        hands = np.broadcast_to(self._interface.quantities["reflex"], (len(senses), 2))
         return np.concatenate([np.array(arms).reshape(-1, 2), hands], axis=1)
 
     def _arm(self, eye: list[float]) -> list[float] | None:
-        task = self._choices.task
-        point = task.looked_at(eye)
-        return None if point is None else task.grasp_posture((point[0], point[1]), 0.0)
+        task = self._interface.task
+        point = _core.looked_at(task, eye)
+        return None if point is None else _core.grasp_posture(task, (point[0], point[1]), 0.0)
 
 
 class GraspRandom:
     """Draws each action uniformly from [−1, 1]⁴, whatever it sees."""
 
     def __init__(self, env: EnvLike = "BabbleGrasp-v0", *, seed: int | None = None) -> None:
-        self._choices = choices_of(env, GraspChoices)
-        self._senses = dict(Spec.of(self._choices.task).slices)
+        self._interface = interface_of(env, "grasp")
+        self._senses = dict(Spec.of(self._interface.task).slices)
         self._random = np.random.default_rng(seed)
 
     def predict(

@@ -12,7 +12,7 @@ from gym_babble import _core
 from gym_babble.agents.base import merge, processors
 from gym_babble.agents.movements import MovementAgent
 from gym_babble.envs import BabbleReachEnv
-from gym_babble.envs.choices import check_seed
+from gym_babble.envs.interface import check_seed
 from gym_babble.errors import AgentFileError, ConfigError
 from gym_babble.progress import track
 
@@ -99,7 +99,7 @@ class HebbBabbling(MovementAgent):
             chunks.append(movements % MOVEMENTS_A_CALL)
         with self._hebb:
             for chunk in track(chunks, "babbling", total=movements, show=progress_bar):
-                self._hebb.learn(self._choices.task, chunk)
+                self._hebb.learn(self._interface.task, chunk)
                 if callback is not None and callback(self) is False:
                     break
         return self
@@ -114,7 +114,7 @@ class HebbBabbling(MovementAgent):
 
     def save(self, path: str | Path) -> None:
         """Writes the agent: weights as safetensors, all else as JSON in its metadata."""
-        Path(path).write_bytes(self._hebb.save(self._choices.task.config()))
+        Path(path).write_bytes(self._hebb.save(self._interface.task.config()))
 
     @classmethod
     def load(

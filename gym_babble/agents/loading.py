@@ -21,7 +21,7 @@ from gym_babble.agents import (
     RandomBabbling,
     Scripted,
 )
-from gym_babble.envs.registration import ENVIRONMENTS
+from gym_babble.envs.registry import ENVIRONMENTS
 from gym_babble.errors import AgentFileError, ConfigError, MissingExtraError
 from gym_babble.study.tasks import REACH, task_of
 
@@ -99,7 +99,7 @@ def _hebb(path: Path, env_id: str | None, config: ConfigLike | None) -> LoadedAg
     env_id = env_id or (GRASPING if grasps else PATTERN)
     agent = kind.load(path)
     if config is None:
-        config = json.loads(agent.choices.task.config())
+        config = json.loads(agent.interface.task.config())
     return LoadedAgent(kind.load(path, gymnasium.make(env_id, config=config)), env_id, config)
 
 
@@ -117,7 +117,7 @@ def _stable_baselines(path: Path, env_id: str | None, config: ConfigLike) -> Loa
         model = algorithm.load(path, device="cpu")
     except Exception as error:  # Unpickling can raise anything.
         raise AgentFileError(f"{path}: {error}") from error
-    registered = next(row.obs for row in ENVIRONMENTS if row.id == env_id)
+    registered = next(row.options["obs"] for row in ENVIRONMENTS if row.id == env_id)
     for obs in (registered, "senses", "flat"):
         space = gymnasium.make(env_id, obs=obs, config=config).observation_space
         if _shapes(space) == _shapes(model.observation_space):

@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from gym_babble.agents.base import EnvLike, choices_of, flat_senses
-from gym_babble.envs.reach import ReachChoices
+from gym_babble import _core
+from gym_babble.agents.base import EnvLike, flat_senses, interface_of
 from gym_babble.envs.spaces import Spec
 from gym_babble.errors import ConfigError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from gym_babble.envs.interface import Interface
 
 __all__ = ["MovementAgent", "Playing"]
 
@@ -36,19 +38,19 @@ class MovementAgent(ABC):
     """
 
     def __init__(self, env: EnvLike) -> None:
-        self._choices = choices_of(env, ReachChoices)
-        self._spec = Spec.of(self._choices.task)
+        self._interface = interface_of(env, "reach")
+        self._spec = Spec.of(self._interface.task)
         self._columns = dict(self._spec.slices)
-        if self._choices.control == "torque":
+        if self._interface.options["control"] == "torque":
             raise ConfigError(
                 "control = 'torque': this agent plans postures; "
                 "use pattern, posture or delta_posture"
             )
 
     @property
-    def choices(self) -> ReachChoices:
+    def interface(self) -> Interface:
         """What the environment of this agent was made with."""
-        return self._choices
+        return self._interface
 
     @abstractmethod
     def decide(self, senses: NDArray[np.float32]) -> NDArray[np.float64]:
@@ -75,7 +77,7 @@ class MovementAgent(ABC):
         del deterministic
         senses = flat_senses(observation, self._columns)
         batch = np.atleast_2d(senses)
-        if self._choices.control == "pattern":
+        if self._interface.options["control"] == "pattern":
             actions: NDArray[np.float32] = (2.0 * self.decide(batch) - 1.0).astype(np.float32)
             playing = None
         else:
@@ -95,7 +97,7 @@ class MovementAgent(ABC):
             starting = np.broadcast_to(np.asarray(starts, np.bool_), n)
         if state is not None and not starting.any():
             return state
-        new = self._choices.task.plan(senses[starting], self.decide(senses[starting]))
+        new = _core.plan(self._interface.task, senses[starting], self.decide(senses[starting]))
         if starting.all():
             return Playing(new, np.zeros(n, np.int64))
         assert state is not None
@@ -108,12 +110,12 @@ class MovementAgent(ABC):
     ) -> tuple[NDArray[np.float32], Playing]:
         last = playing.plan.shape[1] - 1
         share = playing.plan[np.arange(len(senses)), np.minimum(playing.step, last)]
-        if self._choices.control == "posture":
+        if self._interface.options["control"] == "posture":
             actions = 2.0 * share - 1.0
         else:
             # From shares to radians; the equilibrium point is angle plus stretch.
-            width = self._choices.joint_range
+            width = self._interface.quantities["joint_range"]
             wanted = (share - senses[:, self._columns["arm"]]) * width
             change = wanted - senses[:, self._columns["stretch"]]
-            actions = np.clip(change / self._choices.delta_posture, -1.0, 1.0)
+            actions = np.clip(change / self._interface.quantities["delta_posture"], -1.0, 1.0)
         return actions.astype(np.float32), Playing(playing.plan, playing.step + 1)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gym_babble import _core
 from gym_babble.agents.movements import MovementAgent
 
 if TYPE_CHECKING:
@@ -25,7 +26,8 @@ class RandomBabbling(MovementAgent):
 
     def decide(self, senses: NDArray[np.float32]) -> NDArray[np.float64]:
         """Parameters (b1, b2) of movements (n, 2), for flat senses (n, 11)."""
-        b1 = self._random.uniform(*self._choices.b_range, size=len(senses))
+        low, high = self._interface.quantities["b_range"].tolist()
+        b1 = self._random.uniform(low, high, size=len(senses))
         return np.stack([b1, 1.0 - b1], axis=1)
 
 
@@ -37,7 +39,7 @@ class Scripted(MovementAgent):
 
     def decide(self, senses: NDArray[np.float32]) -> NDArray[np.float64]:
         """Parameters (b1, b2) of movements (n, 2), for flat senses (n, 11)."""
-        return self._choices.task.scripted(senses)
+        return _core.scripted(self._interface.task, senses)
 
 
 class Oracle(MovementAgent):
@@ -49,4 +51,4 @@ class Oracle(MovementAgent):
 
     def decide(self, senses: NDArray[np.float32]) -> NDArray[np.float64]:
         """Parameters (b1, b2) of movements (n, 2), for flat senses (n, 11)."""
-        return self._choices.task.oracle(senses, self._threads)
+        return _core.oracle(self._interface.task, senses, self._threads)

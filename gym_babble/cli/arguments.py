@@ -1,10 +1,12 @@
 """Arguments that several commands share."""
 
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any
 
 import typer
 
+from gym_babble.agents.hebb import VARIANTS
 from gym_babble.study.contenders import CONTENDERS
 from gym_babble.study.tasks import TASKS
 
@@ -24,19 +26,31 @@ __all__ = [
     "Seeds",
     "TaskName",
     "Variant",
+    "one_of",
 ]
 
+
+def one_of(values: Iterable[str]) -> Any:
+    """Typer's metavar and callback of an option with these values."""
+    known = tuple(values)
+
+    def check(value: str) -> str:
+        if value not in known:
+            raise typer.BadParameter(f"{value!r} is not one of {', '.join(known)}.")
+        return value
+
+    return {"metavar": f"<{'|'.join(known)}>", "callback": check}
+
+
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document to stdout.")]
-TaskName = Annotated[Literal["reach", "grasp"], typer.Option(help="Task.")]
+TaskName = Annotated[str, typer.Option(help="Task.", **one_of(TASKS))]
 ConfigName = Annotated[str, typer.Option(help="paper, icub, or a TOML or JSON file.")]
 Seed = Annotated[int, typer.Option(min=0, help="Seed.")]
 Seeds = Annotated[int, typer.Option(min=1, help="Number of seeds: 0, 1, ...")]
 Cases = Annotated[int, typer.Option(min=1, help="Tests for each seed.")]
 Movements = Annotated[int, typer.Option(min=1, help="Legal movements to learn from (reaching).")]
 Babbles = Annotated[int, typer.Option(min=1, help="Babbles to learn from (grasping).")]
-Variant = Annotated[
-    Literal["paper", "conjunctive"], typer.Option(help="Variant of the agent (reaching).")
-]
+Variant = Annotated[str, typer.Option(help="Variant of the agent (reaching).", **one_of(VARIANTS))]
 QuasiStatic = Annotated[
     bool, typer.Option("--quasi-static", help="Babble without the muscles' lag: faster (reaching).")
 ]

@@ -6,13 +6,14 @@ from typing import Annotated, Any
 
 import gymnasium
 import typer
+from rich.markup import escape
 from rich.table import Table
 
 from gym_babble.cli.arguments import AsJson, ConfigName
+from gym_babble.cli.list import described
 from gym_babble.cli.output import print_json, print_results
-from gym_babble.envs.registration import ENVIRONMENTS
+from gym_babble.envs import registry
 from gym_babble.study.tables import plain_table
-from gym_babble.study.tasks import task_of
 
 __all__ = ["info"]
 
@@ -22,14 +23,14 @@ def info(
     config: ConfigName = "paper",
     as_json: AsJson = False,
 ) -> None:
-    """Show an environment: senses, action, reward terms, limits."""
-    task_of(env_id)
-    row = next(row for row in ENVIRONMENTS if row.id == env_id)
+    """Show an environment: limits, senses, action, options, parts of a case, protocols."""
+    row = registry.environment(env_id)
+    task = registry.TASKS[row.task]
     env: Any = gymnasium.make(env_id, config=config)
-    spec = env.unwrapped.choices.spec
-    goals = list(spec.goals) if row.obs == "goal" else []
-    described = {
-        **asdict(row),
+    spec = env.unwrapped.interface.spec
+    goals = list(spec.goals) if row.options["obs"] == "goal" else []
+    shown = {
+        **described(row),
         "observation_space": str(env.observation_space),
         "action_space": str(env.action_space),
         "senses": [asdict(entry) for entry in (*spec.senses, *goals)],
@@ -38,15 +39,18 @@ def info(
         "outcomes": spec.outcomes,
         "max_episode_steps": spec.max_episode_steps,
         "control_hz": spec.control_hz,
+        "options": [asdict(option) for option in task.options],
+        "case_parts": [asdict(part) for part in task.case_parts],
+        "protocols": [asdict(protocol) for protocol in task.protocols.values()],
     }
     if as_json:
-        print_json(described)
+        print_json(shown)
     else:
-        print_results(*_tables(described))
+        print_results(*_tables(shown), *_registry_tables(task))
 
 
 def _tables(described: dict[str, Any]) -> list[Table]:
-    """Options and limits of an environment, its senses, and its action."""
+    """Limits of an environment, its senses, and its action."""
     facts = plain_table(described["id"], ["", ""], left=2)
     facts.show_header = False
     for name in ("obs", "control", "reward", "max_episode_steps", "control_hz", "reward_threshold"):
@@ -57,11 +61,26 @@ def _tables(described: dict[str, Any]) -> list[Table]:
     return [facts, _entries_table("senses", senses), _entries_table("action", action)]
 
 
+def _registry_tables(task: registry.TaskEntry) -> list[Table]:
+    """Options, parts of a case, and protocols of a task."""
+    options = plain_table("\noptions of make", ["name", "default", "meaning"], left=3)
+    for option in task.options:
+        default = "" if option.default is None else str(option.default)
+        options.add_row(option.name, default, escape(option.summary))
+    parts = plain_table("\noptions of reset: parts of a case", ["name", "unit", "meaning"], left=3)
+    for part in task.case_parts:
+        parts.add_row(part.name, part.unit, escape(part.doc))
+    protocols = plain_table("\nprotocols: test cases", ["name", "meaning"], left=2)
+    for protocol in task.protocols.values():
+        protocols.add_row(protocol.name, escape(protocol.doc))
+    return [options, parts, protocols]
+
+
 def _entries_table(title: str, entries: Sequence[dict[str, Any]]) -> Table:
     heads = ["name", "parts", "low", "high", "unit", "meaning"]
     table = plain_table(f"\n{title}", heads, left=len(heads))
     for entry in entries:
-        table.add_row(entry["name"], *_parts(entry), entry["unit"], entry["description"])
+        table.add_row(entry["name"], *_parts(entry), entry["unit"], escape(entry["description"]))
     return table
 
 

@@ -1,16 +1,15 @@
 """`gym-babble list`."""
 
-from dataclasses import asdict
 from typing import Any
 
 import gymnasium
 
 from gym_babble.cli.arguments import AsJson
 from gym_babble.cli.output import print_json, print_results
-from gym_babble.envs.registration import ENVIRONMENTS
+from gym_babble.envs.registry import ENVIRONMENTS, Environment
 from gym_babble.study.tables import plain_table
 
-__all__ = ["list_environments"]
+__all__ = ["described", "list_environments"]
 
 
 def list_environments(as_json: AsJson = False) -> None:
@@ -18,8 +17,8 @@ def list_environments(as_json: AsJson = False) -> None:
     listed = []
     for row in ENVIRONMENTS:
         env: Any = gymnasium.make(row.id)
-        steps = env.unwrapped.choices.spec.max_episode_steps
-        listed.append({**asdict(row), "max_episode_steps": steps})
+        steps = env.unwrapped.interface.spec.max_episode_steps
+        listed.append({**described(row), "max_episode_steps": steps})
     if as_json:
         print_json(listed)
         return
@@ -30,3 +29,10 @@ def list_environments(as_json: AsJson = False) -> None:
         steps = str(found["max_episode_steps"])
         table.add_row(*cells, steps, "" if threshold is None else f"{threshold:g}")
     print_results(table)
+
+
+def described(row: Environment) -> dict[str, Any]:
+    """An id, its task, and the options that ids differ in."""
+    options = {name: row.options.get(name, "") for name in ("obs", "control", "reward")}
+    threshold = row.reward_threshold
+    return {"id": row.id, "task": row.task, **options, "reward_threshold": threshold}

@@ -6,11 +6,16 @@ from typing import Annotated, Literal
 import typer
 
 from gym_babble.agents.loading import load_agent
-from gym_babble.cli.arguments import AgentName, EnvId, OwnConfig, Seed
+from gym_babble.cli.arguments import AgentName, EnvId, OwnConfig, Seed, one_of
 from gym_babble.cli.output import check_folder_of, name_files, say
+from gym_babble.envs.registry import TASKS
 from gym_babble.viz.film import record, save_film
 
 __all__ = ["render"]
+
+(CAMERAS,) = {
+    option.values for task in TASKS.values() for option in task.options if option.name == "camera"
+}
 
 
 def render(
@@ -21,9 +26,7 @@ def render(
         Literal["png", "gif", "mp4"], typer.Option("--format", help="Format of the film.")
     ] = "gif",
     seed: Seed = 0,
-    camera: Annotated[
-        Literal["third_person", "eye", "fovea", "edges"], typer.Option(help="Camera.")
-    ] = "third_person",
+    camera: Annotated[str, typer.Option(help="Camera.", **one_of(CAMERAS))] = "third_person",
     size: Annotated[
         int, typer.Option(min=16, max=4096, help="Width and height of a picture [pixel].")
     ] = 360,

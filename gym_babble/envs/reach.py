@@ -2,83 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
-from gymnasium.vector import AutoresetMode
-
-from gym_babble import _core
-from gym_babble.config import ConfigLike, config_json
-from gym_babble.envs.choices import Choices, check_flags, check_names, check_whole, numbers
 from gym_babble.envs.single import BabbleEnv
 from gym_babble.envs.vector import BabbleVectorEnv
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-__all__ = ["BabbleReachEnv", "BabbleReachVectorEnv", "ReachChoices"]
-
-
-class ReachChoices(Choices):
-    """The keyword arguments of a reaching environment, checked, and what follows from them."""
-
-    task_name = "reaching"
-    case_options = ("start", "target", "obstacle")
-    envs_per_thread = 64
-    task: _core.ReachTask
-
-    def __init__(
-        self,
-        *,
-        obs: str,
-        control: str,
-        reward: str,
-        config: ConfigLike,
-        settled: bool,
-        max_episode_steps: int,
-        render_mode: str | None,
-        **pictures: Any,
-    ) -> None:
-        check_names(control=control, reward=reward)
-        check_flags(settled=settled)
-        check_whole("max_episode_steps", max_episode_steps, 1, 1_000_000, "control steps")
-        task = _core.ReachTask(
-            config_json(config),
-            control=control,
-            reward=reward,
-            goal=obs == "goal",
-            settled=bool(settled),
-            # A movement is an episode, whatever limit was registered for other controls.
-            max_episode_steps=1 if control == "pattern" else max_episode_steps,
-            record=render_mode is not None,
-        )
-        super().__init__(task, obs=obs, render_mode=render_mode, **pictures)
-        self.control = control
-
-    def part_of_case(self, name: str, value: Any) -> list[float] | None:
-        """A position (x, y), or the obstacle (x, y, radius) [m]; of (x, y) it has the config's."""
-        if name != "obstacle":
-            return numbers(name, value, 2)
-        if isinstance(value, Sequence | np.ndarray) and len(value) == 2:
-            value = (*value, self.task.obstacle_radius)
-        return numbers(name, value, 3)
-
-    @property
-    def joint_range(self) -> NDArray[np.float64]:
-        """Widths of the joint ranges (2,) [rad]."""
-        return np.array(self.task.joint_range)
-
-    @property
-    def delta_posture(self) -> float:
-        """Change of an equilibrium point by an action of 1 [rad]."""
-        return self.task.delta_posture
-
-    @property
-    def b_range(self) -> tuple[float, float]:
-        """Lowest and highest b1 and b2."""
-        low, high = self.task.b_range
-        return low, high
+__all__ = ["BabbleReachEnv", "BabbleReachVectorEnv"]
 
 
 class BabbleReachEnv(BabbleEnv):
@@ -152,7 +79,7 @@ class BabbleReachEnv(BabbleEnv):
 
     ## Arguments
 
-    Those of `__init__` below; each is a keyword of `gymnasium.make` too, but for
+    The options are listed below; each is a keyword of `gymnasium.make` too, but for
     `max_episode_steps`: `gymnasium.make(id, max_episode_steps=n)` keeps it for its TimeLimit
     wrapper, which truncates after n < 240 steps with the outcome still `running`.
     `gymnasium.make_vec(id, max_episode_steps=n)` and `BabbleReachEnv(max_episode_steps=n)` set the
@@ -160,120 +87,22 @@ class BabbleReachEnv(BabbleEnv):
     `pattern` control.
 
     `reset(options=...)` takes `scenario` (see `gym_babble.scenarios`), or any of `start` (x, y),
-    `target` (x, y) and `obstacle` (x, y), (x, y, radius) or None [m]; what is not given is drawn.
-    Options hold for the resets that follow, until a reset that names others; `{}` names none.
+    `target` (x, y) and `obstacle` (x, y), (x, y, radius) or None [m]; unspecified
+    values are sampled.
+    Options hold for the following resets until replaced; pass `{}` to clear them.
 
     ## Version history
 
     - v0: first.
     """
 
-    metadata: dict[str, Any] = {**BabbleEnv.metadata, "render_fps": 20}  # noqa: RUF012 - Gymnasium's
-    choices_type = ReachChoices
-
-    def __init__(
-        self,
-        render_mode: str | None = None,
-        *,
-        obs: str = "senses",
-        control: str = "delta_posture",
-        reward: str = "progress",
-        config: ConfigLike = "paper",
-        settled: bool = False,
-        max_episode_steps: int = 240,
-        camera: str = "third_person",
-        width: int = 480,
-        height: int = 480,
-        retina_size: int = 84,
-    ) -> None:
-        """Makes the environment.
-
-        Args:
-            render_mode: "rgb_array", "rgb_array_list" (one frame a control step, also within a
-                movement in `pattern` control), "human" (needs the extra `human`), or None.
-            obs: "senses", "flat", "goal" or "retina".
-            control: "delta_posture", "posture", "torque" or "pattern".
-            reward: "progress" or "sparse"; "sparse" with obs="goal".
-            config: A profile ("paper", "icub"), the path of a TOML or JSON file, a dict of what
-                differs from a profile, or a `gym_babble.Config`.
-            settled: Whether success also needs the arm to have come to rest.
-            max_episode_steps: Time limit in control steps; none is needed in `pattern` control.
-            camera: "third_person", "eye", "fovea" (the middle 63 × 63 pixels of the eye's image) or
-                "edges" (in the fovea).
-            width: Width of a picture [pixel].
-            height: Height of a picture [pixel].
-            retina_size: Edge of the eye's image in obs="retina" [pixel]; 630 is the paper's.
-
-        Raises:
-            ConfigError: An argument or a config field is not one there is.
-        """
-        super().__init__(
-            render_mode=render_mode,
-            obs=obs,
-            control=control,
-            reward=reward,
-            config=config,
-            settled=settled,
-            max_episode_steps=max_episode_steps,
-            camera=camera,
-            width=width,
-            height=height,
-            retina_size=retina_size,
-        )
+    task_name = "reach"
 
 
 class BabbleReachVectorEnv(BabbleVectorEnv):
     """A batch of `BabbleReachEnv`, what `gymnasium.make_vec` makes by default.
 
     Seeds, autoresets and options: see `BabbleVectorEnv`.
-
-    Args:
-        num_envs: How many environments.
-        render_mode: "rgb_array", "rgb_array_list" or None.
-        autoreset_mode: When an ended episode begins anew.
-        threads: Threads that step the batch; one for each 64 environments, up to the number of
-            processors, if not given. Results do not depend on it.
-        obs, control, reward, config, settled, max_episode_steps, camera, width, height,
-            retina_size: As for `BabbleReachEnv`.
-
-    Raises:
-        ConfigError: An argument or a config field is not one there is.
     """
 
-    metadata: dict[str, Any] = {**BabbleVectorEnv.metadata, "render_fps": 20}  # noqa: RUF012 - Gymnasium's
-    choices_type = ReachChoices
-
-    def __init__(
-        self,
-        num_envs: int = 1,
-        render_mode: str | None = None,
-        *,
-        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
-        threads: int | None = None,
-        obs: str = "senses",
-        control: str = "delta_posture",
-        reward: str = "progress",
-        config: ConfigLike = "paper",
-        settled: bool = False,
-        max_episode_steps: int = 240,
-        camera: str = "third_person",
-        width: int = 480,
-        height: int = 480,
-        retina_size: int = 84,
-    ) -> None:
-        super().__init__(
-            num_envs,
-            autoreset_mode=autoreset_mode,
-            threads=threads,
-            render_mode=render_mode,
-            obs=obs,
-            control=control,
-            reward=reward,
-            config=config,
-            settled=settled,
-            max_episode_steps=max_episode_steps,
-            camera=camera,
-            width=width,
-            height=height,
-            retina_size=retina_size,
-        )
+    task_name = "reach"

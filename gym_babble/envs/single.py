@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import gymnasium
 
 from gym_babble import _core
-from gym_babble.envs.choices import RENDER_MODES
-from gym_babble.envs.one import OneEnv
+from gym_babble.envs.interface import RENDER_MODES, Interface, document
+from gym_babble.envs.member import BatchMember
+from gym_babble.envs.registry import task_entry
 from gym_babble.envs.spaces import as_actions
 from gym_babble.envs.window import Window
 
@@ -18,38 +19,69 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from gym_babble.envs.choices import Choices
+    from gym_babble.config import ConfigLike
 
 __all__ = ["BabbleEnv"]
 
 
 class BabbleEnv(gymnasium.Env[Any, Any]):
-    """An environment of any task. Each task has a class with its docs and arguments."""
+    """An environment of any task, which `task` names. Tasks with docs have a class of their own."""
 
     metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES)}  # noqa: RUF012 - Gymnasium's
-    choices_type: ClassVar[type[Choices]]
-    """What checks the arguments."""
+    task_name: ClassVar[str] = ""
+    """The task of a class that has one of its own."""
 
-    def __init__(self, **arguments: Any) -> None:
-        self._arguments = arguments
-        self.render_mode = arguments["render_mode"]
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        """Adds the task's options to the signature and the docstring."""
+        super().__init_subclass__(**kwargs)
+        if cls.task_name:
+            document(cls, task_entry(cls.task_name), BabbleEnv)
+
+    def __init__(
+        self,
+        render_mode: str | None = None,
+        *,
+        task: str | None = None,
+        config: ConfigLike = "paper",
+        **options: Any,
+    ) -> None:
+        """Makes the environment.
+
+        Args:
+            render_mode: "rgb_array", "rgb_array_list" (one frame a control step), "human" (needs
+                the extra `human`), or None.
+            task: Name of the task, for the general class.
+            config: A profile ("paper", "icub"), the path of a TOML or JSON file, a dict of what
+                differs from a profile, or a `gym_babble.Config`.
+            options: The task's options; unspecified ones have their defaults.
+
+        Raises:
+            ConfigError: An option or a config field is unknown, of a wrong kind or out of bounds.
+        """
+        self._arguments: dict[str, Any] = {
+            "task": task or self.task_name,
+            "config": config,
+            "render_mode": render_mode,
+            "options": options,
+        }
+        self.render_mode = render_mode
         self._make_core()
-        self.observation_space = self._choices.observation_space
-        self.action_space = self._choices.action_space
-        self.metadata = {**type(self).metadata, "render_fps": self._choices.render_fps}
-        self._shape = self._choices.action_space.shape
+        self.observation_space = self._interface.observation_space
+        self.action_space = self._interface.action_space
+        self.metadata = {**type(self).metadata, "render_fps": self._interface.render_fps}
+        self._shape = self._interface.action_space.shape
         self._seeded = False
         self._window: Window | None = None
 
     def _make_core(self) -> None:
-        self._choices = self.choices_type(**self._arguments)
-        self._batch = _core.Batch(self._choices.task, 1)
-        self._one = OneEnv(self._choices, self._batch, 0)
+        self._interface = Interface(**self._arguments)
+        self._batch = _core.Batch(self._interface.task, 1)
+        self._member = BatchMember(self._interface, self._batch, 0)
 
     @property
-    def choices(self) -> Choices:
-        """What this environment was made with."""
-        return self._choices
+    def interface(self) -> Interface:
+        """Options, spec and spaces of this environment."""
+        return self._interface
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -66,7 +98,7 @@ class BabbleEnv(gymnasium.Env[Any, Any]):
                 episode goes on.
             BusyError: Another thread uses the environment.
         """
-        request = None if options is None else self._choices.request(options)
+        request = None if options is None else self._interface.request(options)
         with self._batch:
             super().reset(seed=seed)
             if seed is not None or not self._seeded:
@@ -75,7 +107,7 @@ class BabbleEnv(gymnasium.Env[Any, Any]):
             if request is not None:
                 self._batch.request(0, request)
             self._batch.reset()
-            self._one.begin()
+            self._member.begin()
             observation, _, _, _, info = self._complete(self._batch.one())
             if self.render_mode == "human":
                 self._show()
@@ -99,22 +131,22 @@ class BabbleEnv(gymnasium.Env[Any, Any]):
     def _complete(
         self, shown: tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]
     ) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        choices = self._choices
+        interface = self._interface
         senses, reward, terminated, truncated, info = shown
-        goals = self._batch.one_goals() if choices.obs == "goal" else []
-        retina = self._one.retina() if choices.obs == "retina" else None
-        return choices.observation(senses, goals, retina), reward, terminated, truncated, info
+        goals = self._batch.one_goals() if interface.obs == "goal" else []
+        retina = self._member.retina() if interface.obs == "retina" else None
+        return interface.observation(senses, goals, retina), reward, terminated, truncated, info
 
     @property
     def compute_reward(self) -> Callable[[Any, Any, Any], Any]:
-        """Reward for achieved and desired goals (2,) or (..., 2) [m], with obs="goal".
+        """Reward for achieved and desired goals, with obs="goal".
 
         Raises:
             AttributeError: The observations have no goals; stable-baselines3 goes by this.
         """
-        if self._choices.obs != "goal":
+        if self._interface.obs != "goal":
             raise AttributeError("compute_reward is there with obs='goal'")
-        return self._choices.goal_reward
+        return self._interface.goal_reward
 
     def render(self) -> Any:
         """A frame (height, width, 3), or the frames since the last call, one a control step.
@@ -125,14 +157,14 @@ class BabbleEnv(gymnasium.Env[Any, Any]):
             gymnasium.error.ResetNeeded: There was no reset yet.
         """
         with self._batch:
-            if self.render_mode == "human" and self._one.ready:
+            if self.render_mode == "human" and self._member.ready:
                 return self._show()
-            return self._one.render()
+            return self._member.render()
 
     def _show(self) -> None:
         if self._window is None:
-            self._window = Window(self._choices.size, self._choices.render_fps)
-        for frame in self._one.new_frames():
+            self._window = Window(self._interface.size, self._interface.render_fps)
+        for frame in self._member.new_frames():
             self._window.show(frame)
 
     def close(self) -> None:
@@ -143,7 +175,7 @@ class BabbleEnv(gymnasium.Env[Any, Any]):
 
     def get_state(self) -> bytes:
         """The whole state, from which `set_state` continues bit for bit."""
-        return self._one.get_state()
+        return self._member.get_state()
 
     def set_state(self, state: bytes) -> None:
         """Continues from a state of an environment with the same arguments.
@@ -152,30 +184,30 @@ class BabbleEnv(gymnasium.Env[Any, Any]):
             SnapshotError: The bytes are not such a state; the environment is as it was.
         """
         with self._batch:
-            self._one.set_state(state)
+            self._member.set_state(state)
             self._seeded = True
 
     def state_hash(self) -> int:
         """A number that two states share only if they are the same to the bit."""
-        return self._one.state_hash()
+        return self._member.state_hash()
 
     @property
     def scenario(self) -> dict[str, Any]:
         """The case of the running episode, as `reset` options."""
-        return self._one.scenario
+        return self._member.scenario
 
     @property
     def trajectory(self) -> NDArray[np.float64]:
         """The way of the hand since the reset (k, 2) [m]; recorded with a render_mode."""
-        return self._one.trajectory
+        return self._member.trajectory
 
     def __getstate__(self) -> dict[str, Any]:
-        hidden = ("_batch", "_choices", "_one", "_window")
+        hidden = ("_batch", "_interface", "_member", "_window")
         state = {k: v for k, v in self.__dict__.items() if k not in hidden}
-        return {"attributes": state, "core": self._one.freeze()}
+        return {"attributes": state, "core": self._member.freeze()}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state["attributes"])
         self._make_core()
-        self._one.thaw(state["core"])
+        self._member.thaw(state["core"])
         self._window = None

@@ -4,25 +4,21 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from gymnasium import spaces
 from gymnasium.error import ResetNeeded
 
-from gym_babble.errors import ActionError, ConfigError
+from gym_babble.errors import ActionError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from gym_babble import _core
 
-    Task: TypeAlias = _core.ReachTask | _core.GraspTask
-    """A task of any kind."""
 
-__all__ = ["OBSERVATIONS", "Entry", "Spec", "as_actions", "observation_space"]
-
-OBSERVATIONS = ("senses", "flat", "goal", "retina")
+__all__ = ["Entry", "Spec", "as_actions", "observation_space"]
 
 
 @dataclass(frozen=True)
@@ -60,7 +56,7 @@ class Spec:
     """Where each sense stands in the flat observation."""
 
     @classmethod
-    def of(cls, task: Task) -> Spec:
+    def of(cls, task: _core.Task) -> Spec:
         """The spec of a task."""
         raw = json.loads(task.spec())
         senses = tuple(_entry(entry) for entry in raw["senses"])
@@ -101,24 +97,17 @@ def _entry(raw: dict[str, Any]) -> Entry:
 
 
 def observation_space(spec: Spec, obs: str, retina_size: int) -> spaces.Space[Any]:
-    """The observation space for a value of `obs=`.
-
-    Raises:
-        ConfigError: `obs` is not one there is.
-    """
+    """The observation space for a value of the option `obs`."""
     if obs == "flat":
         return spec.flat
-    if obs == "senses":
-        return spaces.Dict({entry.name: entry.box for entry in spec.senses})
-    if obs == "goal" and spec.goals:
+    named: dict[str, spaces.Space[Any]] = {entry.name: entry.box for entry in spec.senses}
+    if obs == "goal":
         goals = {entry.name: entry.box for entry in spec.goals}
         return spaces.Dict({"observation": spec.flat, **goals})
     if obs == "retina":
         image = spaces.Box(0, 255, (retina_size, retina_size, 3), np.uint8)
-        senses = {entry.name: entry.box for entry in spec.senses}
-        return spaces.Dict({**senses, "retina": image})
-    known = [name for name in OBSERVATIONS if name != "goal" or spec.goals]
-    raise ConfigError(f"obs = {obs!r} is not one of {', '.join(known)}")
+        return spaces.Dict({**named, "retina": image})
+    return spaces.Dict(named)
 
 
 def as_actions(action: Any, shape: tuple[int, ...]) -> NDArray[np.float32]:

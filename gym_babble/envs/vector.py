@@ -12,15 +12,16 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from gym_babble import _core
-from gym_babble.envs.choices import RENDER_MODES, check_whole
-from gym_babble.envs.one import OneEnv
+from gym_babble.envs.interface import RENDER_MODES, Interface, check_whole, document
+from gym_babble.envs.member import BatchMember
+from gym_babble.envs.registry import task_entry
 from gym_babble.envs.spaces import as_actions
 from gym_babble.errors import ConfigError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from gym_babble.envs.choices import Choices
+    from gym_babble.config import ConfigLike
 
 __all__ = ["BabbleVectorEnv"]
 
@@ -44,56 +45,85 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
         "render_modes": list(RENDER_MODES[1:]),
         "autoreset_mode": AutoresetMode.NEXT_STEP,
     }
-    choices_type: ClassVar[type[Choices]]
-    """What checks the arguments."""
+    task_name: ClassVar[str] = ""
+    """The task of a class that has one of its own."""
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        """Adds the task's options to the signature and the docstring."""
+        super().__init_subclass__(**kwargs)
+        if cls.task_name:
+            document(cls, task_entry(cls.task_name), BabbleVectorEnv)
 
     def __init__(
         self,
-        num_envs: int,
+        num_envs: int = 1,
+        render_mode: str | None = None,
         *,
-        autoreset_mode: AutoresetMode | str,
-        threads: int | None,
-        **arguments: Any,
+        task: str | None = None,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+        threads: int | None = None,
+        config: ConfigLike = "paper",
+        **options: Any,
     ) -> None:
-        if arguments["render_mode"] == "human":
+        """Makes the batch.
+
+        Args:
+            num_envs: How many environments.
+            render_mode: "rgb_array", "rgb_array_list" or None.
+            task: Name of the task, for the general class.
+            autoreset_mode: When an ended episode begins anew.
+            threads: Threads that step the batch; as many as pay off, up to the number of
+                processors, if not given. Results do not depend on it.
+            config: As for the single environment.
+            options: The task's options; unspecified ones have their defaults.
+
+        Raises:
+            ConfigError: An option or a config field is unknown, of a wrong kind or out of bounds.
+        """
+        if render_mode == "human":
             raise ConfigError("render_mode = 'human' shows one environment; use gymnasium.make")
-        self._arguments = arguments
-        self.render_mode = arguments["render_mode"]
+        self._arguments: dict[str, Any] = {
+            "task": task or self.task_name,
+            "config": config,
+            "render_mode": render_mode,
+            "options": options,
+        }
+        self.render_mode = render_mode
         check_whole("num_envs", num_envs, 1, 1_000_000, "environments")
         self.num_envs = num_envs
         self._autoreset = _autoreset_mode(autoreset_mode)
         if threads is None:
-            threads = default_threads(num_envs, self.choices_type.envs_per_thread)
+            threads = default_threads(num_envs, task_entry(self._arguments["task"]).envs_per_thread)
         check_whole("threads", threads, 1, 1024, "threads")
         self._threads = threads
         self._make_core()
-        choices = self._choices
-        self.single_observation_space = choices.observation_space
-        self.single_action_space = choices.action_space
-        self.observation_space = batch_space(choices.observation_space, num_envs)
-        self.action_space = batch_space(choices.action_space, num_envs)
-        self._shape = (num_envs, *choices.action_space.shape)
+        interface = self._interface
+        self.single_observation_space = interface.observation_space
+        self.single_action_space = interface.action_space
+        self.observation_space = batch_space(interface.observation_space, num_envs)
+        self.action_space = batch_space(interface.action_space, num_envs)
+        self._shape = (num_envs, *interface.action_space.shape)
         self.metadata = {
             **type(self).metadata,
-            "render_fps": choices.render_fps,
+            "render_fps": interface.render_fps,
             "autoreset_mode": self._autoreset,
         }
         self._seeded = False
 
     def _make_core(self) -> None:
-        self._choices = self.choices_type(**self._arguments)
+        self._interface = Interface(**self._arguments)
         self._batch = _core.Batch(
-            self._choices.task,
+            self._interface.task,
             self.num_envs,
             autoreset=self._autoreset.value,
             threads=self._threads,
         )
-        self._ones = [OneEnv(self._choices, self._batch, i) for i in range(self.num_envs)]
+        self._members = [BatchMember(self._interface, self._batch, i) for i in range(self.num_envs)]
 
     @property
-    def choices(self) -> Choices:
-        """What this environment was made with."""
-        return self._choices
+    def interface(self) -> Interface:
+        """Options, spec and spaces of each environment."""
+        return self._interface
 
     @property
     def threads(self) -> int:
@@ -127,7 +157,7 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
                     self._batch.request(i, requests[i])
             self._batch.reset(mask.tolist())
             for i in chosen:
-                self._ones[i].begin()
+                self._members[i].begin()
             shown = self._batch.all()
             return self._observation(shown), self._infos(shown, mask)
 
@@ -200,23 +230,23 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
     def _requests(self, options: Any) -> list[dict[str, Any]]:
         cases = options.get("scenario") if isinstance(options, Mapping) else None
         if not isinstance(cases, Sequence) or isinstance(cases, str):
-            return [self._choices.request(options)] * self.num_envs
+            return [self._interface.request(options)] * self.num_envs
         if len(cases) != self.num_envs:
             raise ConfigError(
                 f"options['scenario'] has {len(cases)} cases, expected one or {self.num_envs}"
             )
-        return [self._choices.request({**options, "scenario": case}) for case in cases]
+        return [self._interface.request({**options, "scenario": case}) for case in cases]
 
     def _observation(self, shown: Mapping[str, Any]) -> Any:
         goals = [shown["achieved_goal"], shown["desired_goal"]]
         retina = None
-        if self._choices.obs == "retina":
-            retina = np.stack([one.retina() for one in self._ones])
-        return self._choices.observation(shown["senses"], goals, retina)
+        if self._interface.obs == "retina":
+            retina = np.stack([member.retina() for member in self._members])
+        return self._interface.observation(shown["senses"], goals, retina)
 
     def _infos(self, shown: Mapping[str, Any], mask: NDArray[np.bool_]) -> dict[str, Any]:
         """Infos in the layout of `VectorEnv._add_info`: each key beside its mask."""
-        spec = self._choices.spec
+        spec = self._interface.spec
         terms: dict[str, Any] = {}
         for k, name in enumerate(spec.reward_terms):
             terms[name] = np.where(mask, shown["terms"][:, k], 0.0)
@@ -225,7 +255,7 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
         for k, name in enumerate(spec.facts):
             infos[name] = shown["facts"][:, k] & mask
             infos[f"_{name}"] = mask.copy()
-        infos["outcome"] = np.where(mask, self._choices.outcomes[shown["outcome"]], None)
+        infos["outcome"] = np.where(mask, self._interface.outcomes[shown["outcome"]], None)
         infos["_outcome"] = mask.copy()
         infos["reward_terms"] = terms
         infos["_reward_terms"] = mask.copy()
@@ -238,21 +268,21 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
             return
         indices, last = ended
         goals = (last["achieved_goal"], last["desired_goal"])
-        spec, outcomes = self._choices.spec, self._choices.outcomes
+        spec, outcomes = self._interface.spec, self._interface.outcomes
         for name in spec.reward_terms:
             # The new episodes have had no reward yet; what the step gave stands in `final_info`.
             infos["reward_terms"][name][indices] = 0.0
         for k, i in enumerate(indices.tolist()):
             retina = None
-            if self._choices.obs == "retina":
-                size = self._choices.retina_size
+            if self._interface.obs == "retina":
+                size = self._interface.retina_size
                 retina = self._batch.retina_ended(i, size)
             info = dict(zip(spec.facts, last["facts"][k].tolist(), strict=True))
             info["outcome"] = outcomes[last["outcome"][k]]
             terms = last["terms"][k].tolist()
             info["reward_terms"] = dict(zip(spec.reward_terms, terms, strict=True))
             final = {
-                "final_obs": self._choices.observation(
+                "final_obs": self._interface.observation(
                     last["senses"][k], [goal[k] for goal in goals], retina
                 ),
                 "final_info": info,
@@ -266,18 +296,18 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
             gymnasium.error.ResetNeeded: There was no reset yet.
         """
         with self._batch:
-            return tuple(one.render() for one in self._ones)
+            return tuple(member.render() for member in self._members)
 
     @property
     def compute_reward(self) -> Callable[[Any, Any, Any], Any]:
-        """Reward for achieved and desired goals (2,) or (..., 2) [m], with obs="goal".
+        """Reward for achieved and desired goals, with obs="goal".
 
         Raises:
             AttributeError: The observations have no goals; stable-baselines3 goes by this.
         """
-        if self._choices.obs != "goal":
+        if self._interface.obs != "goal":
             raise AttributeError("compute_reward is there with obs='goal'")
-        return self._choices.goal_reward
+        return self._interface.goal_reward
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
         """Calls a method, or gets an attribute, of each environment.
@@ -308,7 +338,7 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
             AttributeError: The environments have their own values of it, set at a reset.
             ConfigError: The values are not as many as the environments, or differ.
         """
-        if hasattr(OneEnv, name) or name in ("choices", "observation_space", "action_space"):
+        if hasattr(BatchMember, name) or name in ("interface", "observation_space", "action_space"):
             raise AttributeError(f"{name} cannot be set; make the environment anew")
         if isinstance(values, list | tuple):
             if len(values) != self.num_envs or any(value != values[0] for value in values[1:]):
@@ -318,8 +348,8 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
 
     def of_one(self, i: int, name: str) -> Any:
         """An attribute or method of environment i; what is not its own is the batch's."""
-        if hasattr(OneEnv, name) and not name.startswith("_"):
-            return getattr(self._ones[i], name)
+        if hasattr(BatchMember, name) and not name.startswith("_"):
+            return getattr(self._members[i], name)
         if name == "observation_space":
             return self.single_observation_space
         if name == "action_space":
@@ -329,7 +359,7 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
     def get_state(self) -> list[bytes]:
         """The state of each environment, from which `set_state` continues bit for bit."""
         with self._batch:
-            return [one.get_state() for one in self._ones]
+            return [member.get_state() for member in self._members]
 
     def set_state(self, states: Sequence[bytes]) -> None:
         """Continues each environment from a state.
@@ -341,27 +371,27 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
         if len(states) != self.num_envs:
             raise ConfigError(f"{len(states)} states, expected {self.num_envs}")
         with self._batch:
-            before = [one.freeze() for one in self._ones]
+            before = [member.freeze() for member in self._members]
             try:
-                for one, state in zip(self._ones, states, strict=True):
-                    one.set_state(state)
+                for member, state in zip(self._members, states, strict=True):
+                    member.set_state(state)
             except BaseException:  # Ctrl-C too.
-                for one, frozen in zip(self._ones, before, strict=True):
-                    one.thaw(frozen)
+                for member, frozen in zip(self._members, before, strict=True):
+                    member.thaw(frozen)
                 raise
             self._seeded = True
 
     def __getstate__(self) -> dict[str, Any]:
-        hidden = ("_batch", "_choices", "_ones")
+        hidden = ("_batch", "_interface", "_members")
         state = {k: v for k, v in self.__dict__.items() if k not in hidden}
         with self._batch:
-            return {"attributes": state, "core": [one.freeze() for one in self._ones]}
+            return {"attributes": state, "core": [member.freeze() for member in self._members]}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state["attributes"])
         self._make_core()
-        for one, core in zip(self._ones, state["core"], strict=True):
-            one.thaw(core)
+        for member, core in zip(self._members, state["core"], strict=True):
+            member.thaw(core)
 
 
 def default_threads(num_envs: int, envs_per_thread: int) -> int:

@@ -7,6 +7,7 @@ import math
 import xml.etree.ElementTree as ET
 from typing import TYPE_CHECKING, Any
 
+from gym_babble import _core
 from gym_babble.config import Config
 from gym_babble.errors import ConfigError
 from gym_babble.export.xml import COLOURS, add_comment, attribute, axis, colour, document, make_env
@@ -54,7 +55,7 @@ def export_mjcf(
     """
     env = make_env(task, config)
     env.reset(seed=seed, options=None if options is None else dict(options))
-    core, case = env.choices.task, env.scenario
+    core, case = env.interface.task, env.scenario
     whole = Config.from_json(core.config())
     links = json.loads(core.robot())
     dt = _timestep(timestep, whole.reach if task == "reach" else whole.grasp)
@@ -70,7 +71,9 @@ def export_mjcf(
     _add_links(world, links, dt)
     _add_case(world, whole, case)
     _add_muscles(root, links)
-    arm = core.posture_at(case["start"]) if task == "reach" else case["start"]
+    arm: Any = case["start"]
+    if task == "reach":
+        arm = _core.posture_at(core, arm)
     _add_start(root, [*arm, *(link["range"][0] for link in links[2:])], has_object=task == "grasp")
     return document(root)
 

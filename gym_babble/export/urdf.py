@@ -37,7 +37,7 @@ def export_urdf(task: str = "grasp", *, config: ConfigLike = "paper") -> str:
     Raises:
         ConfigError: An unknown name, or a number out of bounds.
     """
-    core = make_env(task, config).choices.task
+    core = make_env(task, config).interface.task
     root = ET.Element("robot", name=f"babble_{task}")
     add_comment(root, task, Config.from_json(core.config()))
     ET.SubElement(root, "link", name="base")

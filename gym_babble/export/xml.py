@@ -6,15 +6,14 @@ import xml.etree.ElementTree as ET
 from typing import TYPE_CHECKING, Any
 
 from gym_babble._core import __version__
-from gym_babble.envs import BabbleGraspEnv, BabbleReachEnv
-from gym_babble.errors import ConfigError
+from gym_babble.envs import BabbleEnv
+from gym_babble.envs.registry import task_entry
 
 if TYPE_CHECKING:
     from gym_babble.config import Config, ConfigLike
 
 __all__ = [
     "COLOURS",
-    "ENVS",
     "add_comment",
     "attribute",
     "axis",
@@ -23,9 +22,6 @@ __all__ = [
     "document",
     "make_env",
 ]
-
-ENVS = {"reach": BabbleReachEnv, "grasp": BabbleGraspEnv}
-"""The environment class of each task."""
 
 COLOURS = {
     "sleeve": "0.36 0.53 0.7 1",
@@ -40,9 +36,7 @@ COLOURS = {
 
 def make_env(task: str, config: ConfigLike) -> Any:
     """The environment of a task; raises `ConfigError` for an unknown one."""
-    if task not in ENVS:
-        raise ConfigError(f"task = {task!r} is not one of {', '.join(ENVS)}")
-    return ENVS[task](config=config)
+    return BabbleEnv(task=task_entry(task).name, config=config)
 
 
 def axis(link: dict[str, Any]) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 
 from gym_babble import _core
 from gym_babble.config import config_json
-from gym_babble.envs.choices import check_whole
+from gym_babble.envs.interface import check_whole
 from gym_babble.progress import track
 from gym_babble.study.evaluation import wilson
 
@@ -50,12 +50,12 @@ def hold_rates(
         ConfigError: `trials` is below 1, or the config is invalid.
     """
     check_whole("trials", trials, 1, 1_000_000, "trials")
-    task = _core.GraspTask(config_json(config))
+    task = _core.Task("grasp", config_json(config), {})
     rates = []
     total = trials * len(diameters)
     parts = track([trials] * len(diameters), "holding", total=total, show=progress_bar)
     for diameter, _ in zip(diameters, parts, strict=True):
-        held, penetration, flexion = task.hold(diameter, trials, os.cpu_count() or 1)
+        held, penetration, flexion = _core.hold(task, diameter, trials, os.cpu_count() or 1)
         low, high = wilson(held, trials)
         rates.append(
             {

@@ -11,7 +11,7 @@ import numpy as np
 
 from gym_babble.agents import HebbGrasping
 from gym_babble.config import Config, config_json
-from gym_babble.envs.choices import check_whole
+from gym_babble.envs.interface import check_whole
 from gym_babble.errors import ConfigError
 from gym_babble.paper.holding import hold_rates
 from gym_babble.study.evaluation import Evaluation, evaluate, wilson

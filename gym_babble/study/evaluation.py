@@ -126,7 +126,7 @@ def _play(
     running = np.ones(n, np.bool_)
     steps, returns = np.zeros(n, np.int64), np.zeros(n)
     outcomes = np.full(n, "running", object)
-    names = envs.get_attr("choices")[0].spec.facts
+    names = envs.get_attr("interface")[0].spec.facts
     facts = {name: np.zeros(n, np.bool_) for name in names}
     while running.any():
         actions, state = agent.predict(observation, state, starts, deterministic)

@@ -197,10 +197,10 @@ def _model(preset: Preset, env: BabbleVecEnv, seed: int) -> PPO:
 
 def _control_steps(env: BabbleVecEnv) -> int:
     """Control steps of one step: a whole movement in `pattern` control, else 1."""
-    choices = env.get_attr("choices")[0]
-    if choices.control != "pattern":
+    interface = env.get_attr("interface")[0]
+    if interface.options["control"] != "pattern":
         return 1
-    return Config.from_json(choices.task.config()).movement_steps
+    return Config.from_json(interface.task.config()).movement_steps
 
 
 @contextmanager

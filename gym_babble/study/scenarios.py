@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict, overload
+from typing import Any, Literal, TypeAlias, TypedDict, overload
 
 from gym_babble import _core
 from gym_babble.config import ConfigLike, config_json
-from gym_babble.envs.choices import check_seed
+from gym_babble.envs.interface import check_seed
+from gym_babble.envs.registry import TASKS
 from gym_babble.errors import ConfigError
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
 
 __all__ = [
     "PROTOCOLS",
@@ -22,14 +20,7 @@ __all__ = [
     "scenarios",
 ]
 
-PROTOCOLS = {
-    "table1": "reach",
-    "fig4": "reach",
-    "table2": "grasp",
-    "fig7": "grasp",
-    "palm_side": "grasp",
-    "full": "grasp",
-}
+PROTOCOLS = {protocol: task.name for task in TASKS.values() for protocol in task.protocols}
 """The protocols, with the task of each."""
 
 SPLITS = ("learning", "validation", "test")
@@ -148,15 +139,11 @@ def scenarios(
     if split not in SPLITS:
         raise ConfigError(f"split = {split!r} is not one of {', '.join(SPLITS)}")
     many = 1000 if n is None else n
-    cases: Iterable[Any]
-    if PROTOCOLS[protocol] == "grasp":
-        region = protocol if protocol == "palm_side" else "full"
-        task = _core.GraspTask(config_json(config), region=region)
-        cases = task.cases(protocol, many, seed, split, threads)
-    elif protocol == "table1":
-        cases = _core.ReachTask(config_json(config)).table1(many, seed, split, threads)
-    else:
-        cases = _core.ReachTask(config_json(config)).fig4()
+    name = PROTOCOLS[protocol]
+    presets = TASKS[name].protocols[protocol].presets
+    cases = _core.Task(name, config_json(config), presets).cases(
+        protocol, many, seed, split, threads
+    )
     numbered = [
         {"protocol": protocol, "index": i, **case}
         for i, case in enumerate(cases)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
-from gym_babble.envs.registration import ENVIRONMENTS
-from gym_babble.errors import ConfigError
+from gym_babble.envs import registry
 
 __all__ = ["GRASP", "REACH", "TASKS", "Task", "task_of"]
 
@@ -34,12 +34,16 @@ class Task:
     """The paper's counts of outcomes on such tests."""
 
 
+def _tests(task: str) -> dict[str, Any]:
+    """The registry's first protocol of a task: the cases that results are reported on."""
+    first = next(iter(registry.TASKS[task].protocols.values()))
+    return {"protocol": first.name, "cases": first.cases, "outcomes": first.outcomes}
+
+
 REACH = Task(
     name="reach",
     title="Reaching",
-    protocol="table1",
-    cases="cases of Table I",
-    outcomes=("success", "collision", "joint_limit", "timeout"),
+    **_tests("reach"),
     trials="movements",
     accepted="legal",
     # Table I: counts of 1,000 tests. About .20 of the babbled movements were legal.
@@ -49,10 +53,7 @@ REACH = Task(
 GRASP = Task(
     name="grasp",
     title="Grasping",
-    protocol="palm_side",
-    cases="objects on the palm's side",
-    # These tests have no obstacle, so nothing collides.
-    outcomes=("success", "lost", "timeout"),
+    **_tests("grasp"),
     facts=("reach", "palm_reach"),
     trials="babbles",
     accepted="kept",
@@ -68,8 +69,4 @@ def task_of(env_id: str) -> Task:
     Raises:
         ConfigError: An unknown environment.
     """
-    for row in ENVIRONMENTS:
-        if row.id == env_id:
-            return TASKS[row.task]
-    known = ", ".join(row.id for row in ENVIRONMENTS)
-    raise ConfigError(f"{env_id!r} is not an environment; known: {known}")
+    return TASKS[registry.environment(env_id).task]

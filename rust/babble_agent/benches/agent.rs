@@ -6,14 +6,14 @@ use babble_agent::reference::{oracle, scripted};
 use babble_agent::{Babbling, Hebb, HebbConfig, Variant};
 use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
 use babble_env::tasks::reach::protocol;
-use babble_env::{Config, Options, Outcome, Pool, Purpose, ReachTask};
+use babble_env::{Config, Executor, Outcome, Purpose, ReachOptions, ReachTask};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 /// Legal movements babbled in one go: several of babbling's own chunks.
 const MOVEMENTS: usize = 500;
 
 fn task() -> ReachTask {
-    ReachTask::new(Config::profile("paper").unwrap(), Options::default()).unwrap()
+    ReachTask::new(Config::profile("paper").unwrap(), ReachOptions::default()).unwrap()
 }
 
 /// The time of one legal movement is that of an element.
@@ -27,7 +27,7 @@ fn babbling(c: &mut Criterion) {
         ("quasi-static", Fidelity::QuasiStatic),
     ] {
         for threads in [1, 2] {
-            let mut pool = Pool::new(threads).unwrap();
+            let mut pool = Executor::new(threads).unwrap();
             group.bench_function(format!("{name}, threads {threads}"), |b| {
                 b.iter(|| {
                     let mut babbling = Babbling::new(black_box(0), fidelity);
@@ -41,7 +41,7 @@ fn babbling(c: &mut Criterion) {
 
 fn hebb(c: &mut Criterion) {
     let task = task();
-    let mut pool = Pool::new(1).unwrap();
+    let mut pool = Executor::new(1).unwrap();
     let experiences = Babbling::new(0, Fidelity::QuasiStatic)
         .experience(&task, MOVEMENTS, &mut pool)
         .unwrap();
@@ -71,7 +71,7 @@ fn hebb(c: &mut Criterion) {
 
 fn references(c: &mut Criterion) {
     let task = task();
-    let mut pool = Pool::new(1).unwrap();
+    let mut pool = Executor::new(1).unwrap();
     let cases = protocol::table1(&task, 50, 0, Purpose::Validation, &mut pool).unwrap();
     let mut next = cases.iter().cycle();
     c.bench_function("scripted, decide and play", |b| {

@@ -1,7 +1,7 @@
 //! Random movements (motor babbling), of which the legal ones are experienced.
 
 use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
-use babble_env::{EnvError, Pool, Purpose, ReachCase, ReachTask, Stop, Stream};
+use babble_env::{EnvError, Executor, Purpose, ReachCase, ReachTask, Stop, Stream};
 use rayon::prelude::*;
 
 use crate::error::AgentError;
@@ -71,7 +71,7 @@ impl Babbling {
         &mut self,
         task: &ReachTask,
         n: usize,
-        pool: &mut Pool,
+        pool: &mut Executor,
     ) -> Result<Vec<Experience>, AgentError> {
         let mut ahead = self.clone();
         let found = pool.run_until(|stop| ahead.babble(task, n, stop))??;

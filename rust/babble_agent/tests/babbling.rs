@@ -6,19 +6,19 @@ use babble_agent::{AgentError, Babbling, Experience, Hebb, HebbConfig, Variant};
 use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
 use babble_env::tasks::reach::protocol;
 use babble_env::{
-    Config, Control, EnvError, Options, Outcome, Pool, Purpose, ReachCase, ReachTask,
+    Config, Control, EnvError, Executor, Outcome, Purpose, ReachCase, ReachOptions, ReachTask,
 };
 
 fn task() -> ReachTask {
-    let options = Options {
+    let options = ReachOptions {
         control: Control::Pattern,
-        ..Options::default()
+        ..ReachOptions::default()
     };
     ReachTask::new(Config::profile("paper").unwrap(), options).unwrap()
 }
 
-fn pool(threads: usize) -> Pool {
-    Pool::new(threads).unwrap()
+fn pool(threads: usize) -> Executor {
+    Executor::new(threads).unwrap()
 }
 
 fn babble(fidelity: Fidelity, portions: &[usize], threads: usize) -> (Vec<Experience>, u64) {
@@ -116,7 +116,7 @@ fn nothing_legal_is_an_error() {
         r#"{"body": {"joints": {"shoulder": {"lower_deg": 0, "upper_deg": 2},
             "elbow": {"lower_deg": 10, "upper_deg": 12}}}}"#,
     );
-    let task = ReachTask::new(config.unwrap(), Options::default()).unwrap();
+    let task = ReachTask::new(config.unwrap(), ReachOptions::default()).unwrap();
     let result = Babbling::new(0, Fidelity::Full).experience(&task, 1, &mut pool(2));
     assert!(matches!(
         result,

@@ -7,7 +7,7 @@ use babble_agent::grasp::holding::trials;
 use babble_agent::grasp::{Experience, GraspBabbling, GraspHebb, GraspHebbConfig};
 use babble_brain::{MapConfig, PopulationMap};
 use babble_env::tasks::grasp::{FOVEA_NEURONS, GraspCase};
-use babble_env::{Autoreset, Batch, Config, EnvError, GraspOptions, GraspTask, Pool};
+use babble_env::{Autoreset, Batch, Config, EnvError, Executor, GraspOptions, GraspTask};
 
 const DIAMETERS: [f64; 2] = [0.024, 0.06];
 
@@ -19,8 +19,8 @@ fn task() -> GraspTask {
     task_with("{}")
 }
 
-fn pool(threads: usize) -> Pool {
-    Pool::new(threads).unwrap()
+fn pool(threads: usize) -> Executor {
+    Executor::new(threads).unwrap()
 }
 
 fn babble(seed: u64, portions: &[usize], threads: usize) -> (Vec<Experience>, u64) {

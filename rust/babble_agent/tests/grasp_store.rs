@@ -3,7 +3,7 @@
 use babble_agent::grasp::{Experience, GraspBabbling, GraspHebb, GraspHebbConfig, load, save};
 use babble_agent::{AgentError, Babbling, Hebb, HebbConfig, Variant, store};
 use babble_env::tasks::reach::movement::Fidelity;
-use babble_env::{Config, GraspOptions, GraspTask, Pool};
+use babble_env::{Config, Executor, GraspOptions, GraspTask};
 
 /// A small agent that has learnt a little, and its file.
 fn agent() -> (GraspHebb, GraspBabbling, Config, Vec<u8>) {
@@ -11,7 +11,7 @@ fn agent() -> (GraspHebb, GraspBabbling, Config, Vec<u8>) {
     let task = GraspTask::new(config.unwrap(), GraspOptions::default()).unwrap();
     let mut babbling = GraspBabbling::new(u64::MAX);
     let experiences = babbling
-        .experience(&task, 6, &mut Pool::new(2).unwrap())
+        .experience(&task, 6, &mut Executor::new(2).unwrap())
         .unwrap();
     let mut hebb = GraspHebb::new(GraspHebbConfig {
         neurons: 3,
@@ -73,7 +73,7 @@ fn babbling_goes_on_from_a_file() {
     let (_, mut babbling, config, bytes) = agent();
     let (_, mut resumed, _) = load(&bytes).unwrap();
     let task = GraspTask::new(config, GraspOptions::default()).unwrap();
-    let mut pool = Pool::new(2).unwrap();
+    let mut pool = Executor::new(2).unwrap();
     let next = babbling.experience(&task, 3, &mut pool).unwrap();
     assert_eq!(resumed.experience(&task, 3, &mut pool).unwrap(), next);
 }

@@ -5,13 +5,14 @@ use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest};
 use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
 use babble_env::tasks::reach::protocol;
 use babble_env::{
-    Autoreset, Batch, Config, Control, Options, Outcome, Pool, Purpose, ReachCase, ReachTask,
+    Autoreset, Batch, Config, Control, Executor, Outcome, Purpose, ReachCase, ReachOptions,
+    ReachTask,
 };
 
 fn task(profile: &str) -> ReachTask {
-    let options = Options {
+    let options = ReachOptions {
         control: Control::Pattern,
-        ..Options::default()
+        ..ReachOptions::default()
     };
     ReachTask::new(Config::profile(profile).unwrap(), options).unwrap()
 }
@@ -27,7 +28,7 @@ fn outcome(task: &ReachTask, case: &ReachCase, b: [f64; 2]) -> Outcome {
 fn oracle_is_at_least_the_script() {
     for (profile, least) in [("paper", 57), ("icub", 57)] {
         let task = task(profile);
-        let mut pool = Pool::new(2).unwrap();
+        let mut pool = Executor::new(2).unwrap();
         let cases = protocol::table1(&task, 60, 0, Purpose::Validation, &mut pool).unwrap();
         let (mut best, mut fixed) = (0, 0);
         for case in &cases {
@@ -48,7 +49,7 @@ fn oracle_is_at_least_the_script() {
 #[test]
 fn oracle_keeps_away_from_the_edges() {
     let task = task("paper");
-    let mut pool = Pool::new(2).unwrap();
+    let mut pool = Executor::new(2).unwrap();
     let cases = protocol::table1(&task, 8, 1, Purpose::Validation, &mut pool).unwrap();
     for case in cases {
         let hundredths = 100.0 * oracle(&task, &case).unwrap()[0];

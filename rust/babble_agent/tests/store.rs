@@ -3,7 +3,7 @@
 use babble_agent::store::{Metadata, load, save};
 use babble_agent::{AgentError, Babbling, Hebb, HebbConfig, Variant};
 use babble_env::tasks::reach::movement::Fidelity;
-use babble_env::{Config, Options, Pool, ReachTask};
+use babble_env::{Config, Executor, ReachOptions, ReachTask};
 
 /// A small agent that has learnt a little, and its file.
 fn agent() -> (Hebb, Metadata, Vec<u8>) {
@@ -13,10 +13,10 @@ fn agent() -> (Hebb, Metadata, Vec<u8>) {
         target_neurons: 3,
         ..HebbConfig::variant(Variant::Conjunctive)
     };
-    let task = ReachTask::new(Config::profile("icub").unwrap(), Options::default()).unwrap();
+    let task = ReachTask::new(Config::profile("icub").unwrap(), ReachOptions::default()).unwrap();
     let mut babbling = Babbling::new(u64::MAX, Fidelity::QuasiStatic);
     let experiences = babbling
-        .experience(&task, 20, &mut Pool::new(2).unwrap())
+        .experience(&task, 20, &mut Executor::new(2).unwrap())
         .unwrap();
     let mut hebb = Hebb::new(config.clone()).unwrap();
     hebb.learn(&experiences).unwrap();

@@ -6,16 +6,16 @@ use std::sync::Arc;
 use babble_env::batch::Batch;
 use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest};
 use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
-use babble_env::{Autoreset, Config, Control, Options, Purpose, ReachCase, ReachTask, Stream};
+use babble_env::{Autoreset, Config, Control, Purpose, ReachCase, ReachOptions, ReachTask, Stream};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 /// Random actions are drawn before the clock runs.
 const ACTIONS: usize = 4096;
 
 fn task(control: Control) -> Arc<ReachTask> {
-    let options = Options {
+    let options = ReachOptions {
         control,
-        ..Options::default()
+        ..ReachOptions::default()
     };
     Arc::new(ReachTask::new(Config::profile("paper").unwrap(), options).unwrap())
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::choice::named_enum;
 use crate::error::EnvError;
-use crate::pool::Pool;
+use crate::executor::Executor;
 use crate::snapshot;
 use crate::stream::{Purpose, Stream};
 use crate::task::{Episode, Phase, Request, Standing, State, Step, Task};
@@ -73,7 +73,7 @@ pub struct Batch<T: Task> {
     task: Arc<T>,
     slots: Vec<Slot<T>>,
     autoreset: Autoreset,
-    pool: Pool,
+    pool: Executor,
 }
 
 /// Without the episodes, which may be large.
@@ -98,18 +98,18 @@ impl<T: Task> Batch<T> {
         autoreset: Autoreset,
         threads: usize,
     ) -> Result<Self, EnvError> {
-        Self::with_pool(task, n, autoreset, Pool::new(threads)?)
+        Self::with_executor(task, n, autoreset, Executor::new(threads)?)
     }
 
     /// The same with a pool that may be interrupted: what it interrupts is told at each method.
     ///
     /// # Errors
     /// [`EnvError::OutOfBounds`] for no environments; [`EnvError::Interrupted`].
-    pub fn with_pool(
+    pub fn with_executor(
         task: Arc<T>,
         n: usize,
         autoreset: Autoreset,
-        pool: Pool,
+        pool: Executor,
     ) -> Result<Self, EnvError> {
         if !(1..=1_000_000).contains(&n) {
             return Err(EnvError::OutOfBounds {

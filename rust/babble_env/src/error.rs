@@ -26,6 +26,46 @@ pub enum EnvError {
         /// The values there are.
         known: String,
     },
+    /// A name is not one of those that there are.
+    #[error("unknown {kind} {name:?}{hint}; there are {known}")]
+    UnknownName {
+        /// What it should name: an environment, an option, a protocol.
+        kind: &'static str,
+        /// The name given.
+        name: String,
+        /// The nearest known name, as a question.
+        hint: String,
+        /// The known names.
+        known: String,
+    },
+    /// The value of an option is of the wrong kind.
+    #[error("{option} = {value} is not {expected}")]
+    OptionKind {
+        /// Name of the option.
+        option: &'static str,
+        /// The value given, as JSON.
+        value: String,
+        /// What it must be.
+        expected: String,
+    },
+    /// The value of an option is nothing that an option can be.
+    #[error("{option} = {value} is not a name, a finite number, True, False or a list of these")]
+    OptionText {
+        /// Name of the option.
+        option: String,
+        /// The value given.
+        value: String,
+    },
+    /// A part of a case has the wrong count of numbers.
+    #[error("{part} = {value}: expected {expected}")]
+    CaseValue {
+        /// Name of the part.
+        part: &'static str,
+        /// The value given.
+        value: String,
+        /// What it must be.
+        expected: String,
+    },
     /// A number of an option is out of bounds.
     #[error("{option} = {value} is out of bounds: {bound}")]
     OutOfBounds {

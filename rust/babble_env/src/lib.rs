@@ -2,14 +2,19 @@
 #![warn(clippy::disallowed_methods, clippy::disallowed_types)]
 
 pub mod batch;
+pub mod case;
 mod check;
 mod choice;
 pub mod config;
+pub mod erased;
 mod error;
+mod executor;
+mod near;
+pub mod option_spec;
 pub mod options;
 mod outcome;
 pub mod picture;
-mod pool;
+pub mod registry;
 pub mod snapshot;
 pub mod spec;
 pub mod stream;
@@ -17,12 +22,16 @@ pub mod task;
 pub mod tasks;
 
 pub use batch::{Autoreset, Batch};
+pub use case::{CaseValue, CaseValues};
 pub use config::Config;
+pub use erased::{AnyBatch, AnyTask, downcast};
 pub use error::EnvError;
+pub use executor::{Executor, Stop};
+pub use option_spec::Options;
 pub use options::{Control, Reward};
 pub use outcome::Outcome;
-pub use pool::{Pool, Stop};
+pub use registry::make;
 pub use stream::{Purpose, Stream};
 pub use task::Task;
 pub use tasks::grasp::{GraspCase, GraspOptions, GraspTask};
-pub use tasks::reach::{Movement, MovementPath, Options, ReachCase, ReachTask};
+pub use tasks::reach::{Movement, MovementPath, ReachCase, ReachOptions, ReachTask};

@@ -1,8 +1,12 @@
 //! Portable streams of random numbers.
 
+use std::str::FromStr;
+
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
+
+use crate::error::EnvError;
 
 /// What a stream is drawn for. Streams of different purpose never coincide, so that learning,
 /// validation and test cases of the same seed are disjoint.
@@ -19,6 +23,24 @@ pub enum Purpose {
     Test = 4,
     /// Random choices of an agent.
     Policy = 5,
+}
+
+impl FromStr for Purpose {
+    type Err = EnvError;
+
+    /// What cases are drawn for: `learning`, `validation` or `test`.
+    fn from_str(name: &str) -> Result<Self, EnvError> {
+        match name {
+            "learning" => Ok(Self::Learning),
+            "validation" => Ok(Self::Validation),
+            "test" => Ok(Self::Test),
+            _ => Err(EnvError::Option {
+                option: "split",
+                value: name.to_owned(),
+                known: "learning, validation, test".to_owned(),
+            }),
+        }
+    }
 }
 
 /// A stream of random numbers (PCG64): the same on every platform, small enough for a snapshot.

@@ -1,14 +1,22 @@
 //! What a batch needs to know of a task and of its episodes.
 
+use std::fmt;
+
+use babble_body::description::LinkDescription;
 use image::RgbImage;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
+use crate::case::{CasePart, CaseValues};
+use crate::config::Config;
 use crate::error::EnvError;
+use crate::executor::Executor;
+use crate::near;
 use crate::outcome::Outcome;
 use crate::picture::View;
 use crate::spec::Spec;
-use crate::stream::Stream;
+use crate::stream::{Purpose, Stream};
 
 /// Most terms of a reward.
 pub const MAX_TERMS: usize = 4;
@@ -16,7 +24,7 @@ pub const MAX_TERMS: usize = 4;
 pub const MAX_FACTS: usize = 8;
 
 /// Everything about a task that stays the same within and between episodes.
-pub trait Task: Send + Sync + Sized + 'static {
+pub trait Task: fmt::Debug + Send + Sync + Sized + 'static {
     /// One episode of it.
     type Episode: Episode<Task = Self>;
 
@@ -24,6 +32,9 @@ pub trait Task: Send + Sync + Sized + 'static {
     const NAME: &'static str;
     /// First bytes of its snapshots.
     const MAGIC: [u8; 4];
+
+    /// What a case consists of, and a user may ask of one.
+    const CASE_PARTS: &'static [CasePart] = &[];
 
     /// Environments that a thread steps at least: their steps must outlast handing them over.
     fn min_per_thread(&self) -> usize;
@@ -34,11 +45,66 @@ pub trait Task: Send + Sync + Sized + 'static {
     /// Numbers in a flat observation.
     fn senses_len(&self) -> usize;
 
+    /// The config it was made from.
+    fn config(&self) -> &Config;
+
+    /// Numbers that follow from the config and that agents and exports need, by name, in SI units.
+    fn quantities(&self) -> Value {
+        Value::Object(serde_json::Map::new())
+    }
+
+    /// Links of arm and hand; none where the task has no robot.
+    fn robot(&self) -> Vec<LinkDescription> {
+        Vec::new()
+    }
+
     /// Observations, actions, and the names of all that an episode shows.
     fn spec(&self) -> Spec;
 
     /// All that decides how an episode goes on: a snapshot continues only where it is the same.
     fn fingerprint(&self) -> impl Serialize;
+
+    /// Reward of the goal form, from positions alone; NaN where the task has no such form.
+    fn goal_reward(&self, achieved: &[f32], desired: &[f32]) -> f64 {
+        let _ = (achieved, desired);
+        f64::NAN
+    }
+
+    /// What named values ask of the cases to come. Unspecified values are sampled.
+    fn request(&self, asked: &CaseValues) -> Request<Self> {
+        let _ = asked;
+        Request::<Self>::default()
+    }
+
+    /// The case of an episode as named values.
+    fn case(&self, state: &State<Self>) -> CaseValues {
+        let _ = state;
+        CaseValues::default()
+    }
+
+    /// The cases of a protocol, in their order; none at places of a fixed list that have no case. Of
+    /// random cases there are `n`, and case i depends on `purpose`, `seed` and i alone.
+    ///
+    /// # Errors
+    /// [`EnvError::UnknownName`] for an unknown protocol, [`EnvError::NoLegalCase`] or
+    /// [`EnvError::NoGraspCase`] when the config leaves no room, or an error of the executor.
+    fn cases(
+        &self,
+        protocol: &str,
+        n: usize,
+        seed: u64,
+        purpose: Purpose,
+        executor: &mut Executor,
+    ) -> Result<Vec<Option<CaseValues>>, EnvError> {
+        let _ = (n, seed, purpose, executor);
+        Err(near::unknown("protocol", protocol, []))
+    }
+
+    /// The recorded positions of the hand, one a control step \[m\].
+    fn trail(&self, state: &State<Self>) -> Vec<[f64; 2]> {
+        let _ = state;
+        Vec::new()
+    }
 
     /// How many moments of an episode were recorded.
     fn moments(&self, state: &State<Self>) -> usize;

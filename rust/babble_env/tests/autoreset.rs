@@ -3,11 +3,11 @@
 mod playing;
 
 use babble_env::batch::Record;
-use babble_env::{Autoreset, Batch, Control, EnvError, Options, ReachTask};
+use babble_env::{Autoreset, Batch, Control, EnvError, ReachOptions, ReachTask};
 use playing::{Actions, batch, bits, control};
 
-fn options(of: Control) -> Options {
-    Options {
+fn options(of: Control) -> ReachOptions {
+    ReachOptions {
         max_episode_steps: 15,
         ..control(of)
     }

@@ -5,7 +5,7 @@ mod playing;
 use babble_env::batch::Record;
 use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest, obstacle_at};
 use babble_env::{
-    Autoreset, Batch, Config, Control, EnvError, Options, Pool, ReachTask, Reward, Task,
+    Autoreset, Batch, Config, Control, EnvError, Executor, ReachOptions, ReachTask, Reward, Task,
 };
 use playing::{batch, bits, control, goal, task};
 
@@ -100,12 +100,12 @@ fn impossible_cases_are_named() {
 #[test]
 fn impossible_options_are_named() {
     let make = |options| ReachTask::new(Config::profile("paper").unwrap(), options).map(|_| ());
-    let base = Options::default();
-    let progress = Options {
+    let base = ReachOptions::default();
+    let progress = ReachOptions {
         reward: Reward::Progress,
         ..goal(Control::Posture)
     };
-    let settled = Options {
+    let settled = ReachOptions {
         settled: true,
         ..goal(Control::Posture)
     };
@@ -117,7 +117,7 @@ fn impossible_options_are_named() {
         );
     }
     for max_episode_steps in [0, 1_000_001] {
-        let error = make(Options {
+        let error = make(ReachOptions {
             max_episode_steps,
             ..base
         })
@@ -131,7 +131,7 @@ fn impossible_options_are_named() {
         let error = Batch::new(task(base), n, Autoreset::NextStep, threads).unwrap_err();
         assert!(error.to_string().starts_with(name), "{error}");
     }
-    assert!(Pool::new(0).is_err());
+    assert!(Executor::new(0).is_err());
     assert!(
         "fast"
             .parse::<Control>()

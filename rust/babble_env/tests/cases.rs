@@ -5,13 +5,14 @@ mod playing;
 use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest, obstacle_at};
 use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
 use babble_env::tasks::reach::protocol;
-use babble_env::{Config, Control, Options, Pool, Purpose, ReachCase, ReachTask, Stream};
+use babble_env::{Config, Control, Executor, Purpose, ReachCase, ReachOptions, ReachTask, Stream};
 use nalgebra::Vector2;
 use playing::{control, task};
 
 fn tasks() -> [ReachTask; 2] {
-    ["paper", "icub"]
-        .map(|name| ReachTask::new(Config::profile(name).unwrap(), Options::default()).unwrap())
+    ["paper", "icub"].map(|name| {
+        ReachTask::new(Config::profile(name).unwrap(), ReachOptions::default()).unwrap()
+    })
 }
 
 /// Whether some movement of the grid b1 = .01, .02, … solves the case.
@@ -75,7 +76,14 @@ fn legal_cases_can_be_solved() {
 fn table1_depends_on_purpose_seed_and_index_alone() {
     let task = task(control(Control::Pattern));
     let draw = |n, seed, purpose, threads| {
-        protocol::table1(&task, n, seed, purpose, &mut Pool::new(threads).unwrap()).unwrap()
+        protocol::table1(
+            &task,
+            n,
+            seed,
+            purpose,
+            &mut Executor::new(threads).unwrap(),
+        )
+        .unwrap()
     };
     let cases = draw(40, 0, Purpose::Test, 1);
     assert!(

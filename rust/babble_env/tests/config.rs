@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use babble_env::config::PROFILES;
-use babble_env::{Config, EnvError, Options, ReachTask};
+use babble_env::{Config, EnvError, ReachOptions, ReachTask};
 
 fn refusal(json: &str) -> String {
     match Config::from_json(json) {
@@ -22,7 +22,7 @@ fn profiles_are_valid() {
     for name in PROFILES {
         let config = Config::profile(name).unwrap();
         config.validate().unwrap();
-        ReachTask::new(config.clone(), Options::default()).unwrap();
+        ReachTask::new(config.clone(), ReachOptions::default()).unwrap();
         assert_eq!(
             Config::from_json(&config.to_json().unwrap()),
             Ok(config.clone())
@@ -205,7 +205,7 @@ fn numbers_out_of_bounds_are_named() {
 fn config_without_room_says_so() {
     let json = r#"{"body": {"joints": {
         "shoulder": {"lower_deg": 0, "upper_deg": 2}, "elbow": {"lower_deg": 10, "upper_deg": 12}}}}"#;
-    let task = ReachTask::new(Config::from_json(json).unwrap(), Options::default()).unwrap();
+    let task = ReachTask::new(Config::from_json(json).unwrap(), ReachOptions::default()).unwrap();
     let mut stream = babble_env::Stream::new(babble_env::Purpose::Test, 0, 0);
     let error = babble_env::ReachCase::draw_geometry(&task, &mut stream).unwrap_err();
     assert!(matches!(error, EnvError::NoLegalCase { .. }), "{error}");

@@ -2,14 +2,14 @@
 
 mod playing;
 
-use babble_env::{Autoreset, Control, Options};
+use babble_env::{Autoreset, Control, ReachOptions};
 use playing::{Actions, batch, bits, control};
 
 const N: usize = 24;
 
 /// Short episodes, so that many begin anew.
-fn short(of: Control) -> Options {
-    Options {
+fn short(of: Control) -> ReachOptions {
+    ReachOptions {
         max_episode_steps: 40,
         ..control(of)
     }

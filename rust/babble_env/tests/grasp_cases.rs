@@ -5,8 +5,8 @@ mod playing;
 
 use babble_env::tasks::grasp::{GraspCase, GraspRequest, InHand, Region, protocol};
 use babble_env::{
-    Autoreset, Batch, Config, Control, EnvError, GraspOptions, GraspTask, Pool, Purpose, Reward,
-    Stream,
+    Autoreset, Batch, Config, Control, EnvError, Executor, GraspOptions, GraspTask, Purpose,
+    Reward, Stream,
 };
 use nalgebra::Vector3;
 use playing::bits;
@@ -39,7 +39,7 @@ fn gap(task: &GraspTask, case: &GraspCase) -> f64 {
 }
 
 fn random(task: &GraspTask, n: usize, seed: u64, purpose: Purpose) -> Vec<GraspCase> {
-    protocol::random(task, n, seed, purpose, &mut Pool::new(2).unwrap()).unwrap()
+    protocol::random(task, n, seed, purpose, &mut Executor::new(2).unwrap()).unwrap()
 }
 
 fn polar([x, y]: [f64; 2]) -> [f64; 2] {

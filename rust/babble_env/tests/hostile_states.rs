@@ -9,7 +9,8 @@ use babble_env::tasks::grasp::{GraspRequest, GraspState, Grip};
 use babble_env::tasks::reach::ReachState;
 use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest};
 use babble_env::{
-    Autoreset, Batch, Control, EnvError, GraspOptions, GraspTask, Options, Outcome, Task, snapshot,
+    Autoreset, Batch, Control, EnvError, GraspOptions, GraspTask, Outcome, ReachOptions, Task,
+    snapshot,
 };
 use babble_eye::Gaze;
 use nalgebra::Vector2;
@@ -39,7 +40,7 @@ fn refused<T: Task>(env: &mut Batch<T>, named: &str, spoil: impl FnOnce(&mut Sta
 #[test]
 fn nonsense_of_reaching_is_refused() {
     for of in [Control::DeltaPosture, Control::Torque, Control::Pattern] {
-        let options = Options {
+        let options = ReachOptions {
             record: true,
             ..control(of)
         };

@@ -1,14 +1,14 @@
 //! What interrupts a pool and a batch, and what state it leaves them in.
 
 use std::cell::Cell;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 use std::thread::{self, ThreadId};
 use std::time::{Duration, Instant};
 
 use babble_env::picture::View;
 use babble_env::spec::{Entry, Spec};
 use babble_env::task::{Episode, Phase, Standing, Step, Task};
-use babble_env::{Autoreset, Batch, EnvError, Outcome, Pool, Stream};
+use babble_env::{Autoreset, Batch, Config, EnvError, Executor, Outcome, Stream};
 use image::RgbImage;
 use serde::Serialize;
 
@@ -30,13 +30,14 @@ fn interrupted() -> bool {
 }
 
 /// A pool that is interrupted when it asks for the (`most` + 1)-th time.
-fn after(most: u32, threads: usize) -> Pool {
+fn after(most: u32, threads: usize) -> Executor {
     ASKED.set((0, most));
-    Pool::new(threads).unwrap().interrupted_by(interrupted)
+    Executor::new(threads).unwrap().interrupted_by(interrupted)
 }
 
 /// A task that takes its time, also to make an environment: an action counts up, to the end of an
 /// episode at 3.
+#[derive(Debug)]
 struct Slow {
     making: Duration,
 }
@@ -49,6 +50,11 @@ impl Task for Slow {
     type Episode = Count;
     const NAME: &'static str = "slow";
     const MAGIC: [u8; 4] = *b"SLOW";
+
+    fn config(&self) -> &Config {
+        static PAPER: LazyLock<Config> = LazyLock::new(|| Config::profile("paper").unwrap());
+        &PAPER
+    }
 
     fn min_per_thread(&self) -> usize {
         1
@@ -179,9 +185,9 @@ impl Episode for Count {
 }
 
 /// n environments that were reset.
-fn slow(n: usize, pool: Pool, autoreset: Autoreset) -> Batch<Slow> {
+fn slow(n: usize, pool: Executor, autoreset: Autoreset) -> Batch<Slow> {
     let making = Duration::ZERO;
-    let mut batch = Batch::with_pool(Arc::new(Slow { making }), n, autoreset, pool).unwrap();
+    let mut batch = Batch::with_executor(Arc::new(Slow { making }), n, autoreset, pool).unwrap();
     batch.reset(&vec![true; n]).unwrap();
     batch
 }
@@ -247,7 +253,7 @@ fn a_failed_automatic_reset_leaves_environments_that_need_a_reset() {
     let needs_reset = Err(EnvError::NeedsReset { env: 0 });
     for threads in [1, 2] {
         for autoreset in [Autoreset::SameStep, Autoreset::NextStep] {
-            let mut batch = slow(8, Pool::new(threads).unwrap(), autoreset);
+            let mut batch = slow(8, Executor::new(threads).unwrap(), autoreset);
             batch.request(5, 1).unwrap();
             batch.reset(&[true; 8]).unwrap();
             let mut actions = [1.0; 8];
@@ -271,7 +277,7 @@ fn a_failed_automatic_reset_leaves_environments_that_need_a_reset() {
 #[test]
 fn making_a_batch_can_be_interrupted() {
     let task = Arc::new(Slow { making: STEP });
-    let made = Batch::with_pool(task, N, Autoreset::NextStep, after(0, 1));
+    let made = Batch::with_executor(task, N, Autoreset::NextStep, after(0, 1));
     assert_eq!(made.err(), Some(EnvError::Interrupted));
 }
 

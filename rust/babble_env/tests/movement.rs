@@ -5,7 +5,7 @@ mod playing;
 use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest};
 use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
 use babble_env::{
-    Autoreset, Batch, Config, Control, Options, Outcome, Purpose, ReachCase, ReachTask, Stream,
+    Autoreset, Batch, Config, Control, Outcome, Purpose, ReachCase, ReachOptions, ReachTask, Stream,
 };
 use playing::{control, task};
 
@@ -22,8 +22,8 @@ fn movements(task: &ReachTask, n: u64) -> Vec<(ReachCase, [f64; 2])> {
 }
 
 /// An environment that is reset to play `case`, with its postures recorded.
-fn play(options: Options, case: &ReachCase) -> Batch<ReachTask> {
-    let options = Options {
+fn play(options: ReachOptions, case: &ReachCase) -> Batch<ReachTask> {
+    let options = ReachOptions {
         record: true,
         max_episode_steps: 1000,
         ..options

@@ -5,7 +5,7 @@ mod playing;
 use babble_env::batch::Record;
 use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest};
 use babble_env::tasks::reach::{IS_SUCCESS, goal_reward};
-use babble_env::{Autoreset, Batch, Control, Options, Outcome, ReachTask, Reward, Task};
+use babble_env::{Autoreset, Batch, Control, Outcome, ReachOptions, ReachTask, Reward, Task};
 use playing::{Actions, batch, control, goal};
 
 fn record(env: &Batch<ReachTask>) -> Record {
@@ -21,7 +21,7 @@ fn to_target(env: &Batch<ReachTask>) -> [f32; 2] {
         .map(|share| (2.0 * share - 1.0) as f32)
 }
 
-fn without_obstacle(options: Options, seed: u64) -> Batch<ReachTask> {
+fn without_obstacle(options: ReachOptions, seed: u64) -> Batch<ReachTask> {
     let mut env = batch(options, 1, Autoreset::Disabled, 1, seed);
     let obstacle = ObstacleRequest::Absent;
     env.request(
@@ -40,7 +40,7 @@ fn without_obstacle(options: Options, seed: u64) -> Batch<ReachTask> {
 #[test]
 fn terms_sum_to_the_reward() {
     for &of in Control::ALL {
-        let sparse = Options {
+        let sparse = ReachOptions {
             reward: Reward::Sparse,
             ..control(of)
         };
@@ -97,7 +97,7 @@ fn progress_adds_up_over_an_episode() {
 fn success_ends_the_episode() {
     for reward in [Reward::Progress, Reward::Sparse] {
         for settled in [false, true] {
-            let options = Options {
+            let options = ReachOptions {
                 reward,
                 settled,
                 ..control(Control::Posture)
@@ -134,7 +134,7 @@ fn goal_reward_is_the_steps_reward() {
     let mut reached = 0;
     for &of in Control::ALL {
         let mut env = batch(
-            Options {
+            ReachOptions {
                 max_episode_steps: 60,
                 ..goal(of)
             },
@@ -177,7 +177,7 @@ fn ends(shown: &Record) -> bool {
 fn collision_holds_the_arm_in_goal_form() {
     let mut held = 0;
     for seed in 0..20 {
-        let options = Options {
+        let options = ReachOptions {
             max_episode_steps: 100,
             ..goal(Control::Posture)
         };
@@ -215,7 +215,7 @@ fn collision_holds_the_arm_in_goal_form() {
 #[test]
 fn time_limit_truncates() {
     for of in [Control::DeltaPosture, Control::Posture, Control::Torque] {
-        let options = Options {
+        let options = ReachOptions {
             max_episode_steps: 7,
             ..control(of)
         };

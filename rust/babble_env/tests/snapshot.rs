@@ -4,18 +4,18 @@ mod playing;
 
 use std::sync::Arc;
 
-use babble_env::{Autoreset, Batch, Config, Control, EnvError, Options, ReachTask, Reward};
+use babble_env::{Autoreset, Batch, Config, Control, EnvError, ReachOptions, ReachTask, Reward};
 use playing::{Actions, bits, control, goal, seeded, task};
 use proptest::prelude::*;
 
-fn options(of: Control) -> Options {
-    Options {
+fn options(of: Control) -> ReachOptions {
+    ReachOptions {
         max_episode_steps: 30,
         ..control(of)
     }
 }
 
-fn played(options: Options, steps: usize) -> (Batch<ReachTask>, Actions) {
+fn played(options: ReachOptions, steps: usize) -> (Batch<ReachTask>, Actions) {
     played_by(task(options), steps)
 }
 
@@ -35,7 +35,7 @@ fn any_task() -> impl Strategy<Value = Arc<ReachTask>> {
     let body = proptest::sample::select(&["paper", "icub"]);
     (controls, rewards, any::<[bool; 3]>(), body).prop_map(
         |(control, reward, [goal, settled, record], body)| {
-            let options = Options {
+            let options = ReachOptions {
                 reward: if goal { Reward::Sparse } else { reward },
                 goal,
                 settled: settled && !goal,
@@ -111,7 +111,7 @@ fn foreign_snapshots_are_refused() {
         control(Control::DeltaPosture),
         options(Control::Posture),
         goal(Control::DeltaPosture),
-        Options {
+        ReachOptions {
             settled: true,
             ..options(Control::DeltaPosture)
         },
@@ -126,7 +126,7 @@ fn foreign_snapshots_are_refused() {
     let mut icub = Batch::new(task.unwrap().into(), 1, Autoreset::NextStep, 1).unwrap();
     icub.reset(&[true]).unwrap();
     refused(&mut env, &icub.save(0).unwrap());
-    let recording = Options {
+    let recording = ReachOptions {
         record: true,
         ..options(Control::DeltaPosture)
     };

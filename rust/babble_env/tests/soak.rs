@@ -10,7 +10,7 @@ use std::sync::Arc;
 use babble_env::task::{Episode, State};
 use babble_env::tasks::grasp::Region;
 use babble_env::{
-    Autoreset, Batch, Config, Control, GraspOptions, GraspTask, Options, Purpose, ReachTask,
+    Autoreset, Batch, Config, Control, GraspOptions, GraspTask, Purpose, ReachOptions, ReachTask,
     Reward, Stream, Task,
 };
 use playing::grasping::{CONTROLS, before_the_palm, grasp_with, with_control};
@@ -225,7 +225,7 @@ fn reaching() -> Vec<Arc<ReachTask>> {
                 (false, Reward::Sparse, true),
                 (true, Reward::Sparse, false),
             ] {
-                let options = Options {
+                let options = ReachOptions {
                     goal,
                     reward,
                     settled,

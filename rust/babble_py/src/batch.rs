@@ -1,45 +1,24 @@
 //! n environments of any task as one Python object.
 
+use std::sync::Arc;
+
+use babble_env::AnyBatch;
+use babble_env::EnvError;
 use babble_env::batch::Record;
+use babble_env::case::CasePart;
 use babble_env::picture::View;
-use babble_env::{Autoreset, EnvError, Task, snapshot};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyString, PyTuple};
 
-use crate::convert::{PyTask, table};
-use crate::grasp::GraspTask;
+use crate::convert::{array2, case_dict, case_values, table};
 use crate::guarded::Guarded;
-use crate::reach::ReachTask;
+use crate::task::Task;
 use crate::{errors, signals};
 
 /// Indices of the environments whose episode ended, and what those episodes showed last.
 type Ended<'py> = (Bound<'py, PyArray1<usize>>, Bound<'py, PyDict>);
-
-/// A task of Python's.
-#[derive(FromPyObject)]
-enum AnyTask<'py> {
-    Reach(Bound<'py, ReachTask>),
-    Grasp(Bound<'py, GraspTask>),
-}
-
-/// A batch of whichever task.
-#[derive(Debug)]
-enum AnyBatch {
-    Reach(babble_env::Batch<babble_env::ReachTask>),
-    Grasp(babble_env::Batch<babble_env::GraspTask>),
-}
-
-/// The value of an expression about the batch, whichever its task.
-macro_rules! with {
-    ($any:expr, $batch:ident => $value:expr) => {
-        match $any {
-            AnyBatch::Reach($batch) => $value,
-            AnyBatch::Grasp($batch) => $value,
-        }
-    };
-}
 
 /// A batch of n episodes, stepped together.
 ///
@@ -47,7 +26,11 @@ macro_rules! with {
 #[pyclass(frozen, module = "gym_babble._core")]
 #[derive(Debug)]
 pub(crate) struct Batch {
-    envs: Guarded<AnyBatch>,
+    envs: Guarded<Box<dyn AnyBatch>>,
+    /// What may be asked of a case.
+    parts: &'static [CasePart],
+    /// Whether one step takes longer than handing it to a thread.
+    long_steps: bool,
     senses: usize,
     /// Names of the facts.
     facts: Vec<Py<PyString>>,
@@ -61,34 +44,26 @@ impl Batch {
     #[pyo3(signature = (task, num_envs=1, *, autoreset="Disabled", threads=1))]
     fn new(
         py: Python<'_>,
-        task: AnyTask<'_>,
+        task: &Task,
         num_envs: usize,
         autoreset: &str,
         threads: usize,
     ) -> PyResult<Self> {
-        let autoreset = autoreset.parse::<Autoreset>().map_err(errors::env)?;
-        let pool = signals::pool(threads).map_err(errors::env)?;
-        let envs = match task {
-            AnyTask::Reach(task) => {
-                let task = task.get().task.clone();
-                py.detach(|| babble_env::Batch::with_pool(task, num_envs, autoreset, pool))
-                    .map(AnyBatch::Reach)
-            }
-            AnyTask::Grasp(task) => {
-                let task = task.get().task.clone();
-                py.detach(|| babble_env::Batch::with_pool(task, num_envs, autoreset, pool))
-                    .map(AnyBatch::Grasp)
-            }
+        let make = || {
+            let (autoreset, executor) = (autoreset.parse()?, signals::executor(threads)?);
+            Arc::clone(&task.task).batch(num_envs, autoreset, executor)
         };
-        let envs = envs.map_err(errors::env)?;
-        let (senses, spec) =
-            with!(&envs, batch => (batch.task().senses_len(), batch.task().spec()));
+        let envs = py.detach(make).map_err(errors::env)?;
+        let spec = task.task.spec();
+        let senses = spec.senses.iter().map(|entry| entry.labels.len()).sum();
         let names = |names: &[&str]| {
             let name = |name: &&str| PyString::intern(py, name).unbind();
             names.iter().map(name).collect()
         };
         Ok(Self {
             envs: Guarded::new("environment", envs),
+            parts: task.task.case_parts(),
+            long_steps: task.task.has_long_steps(),
             senses,
             facts: names(spec.facts),
             terms: names(spec.reward_terms),
@@ -110,19 +85,20 @@ impl Batch {
 
     /// Starts the stream of cases of environment `i` anew.
     fn seed(&self, i: usize, seed: u64) -> PyResult<()> {
-        with!(&mut *self.envs.write()?, batch => batch.seed(i, seed)).map_err(errors::env)
+        self.envs.write()?.seed(i, seed).map_err(errors::env)
     }
 
     /// What the following resets of environment `i` ask of their cases, in the task's own words.
     fn request(&self, i: usize, asked: &Bound<'_, PyDict>) -> PyResult<()> {
-        with!(&mut *self.envs.write()?, batch => request(batch, i, asked))
+        let asked = case_values(self.parts, asked)?;
+        self.envs.write()?.request(i, &asked).map_err(errors::env)
     }
 
     /// Begins new episodes where `mask` is true; in all environments without one.
     #[pyo3(signature = (mask=None))]
     fn reset(&self, py: Python<'_>, mask: Option<Vec<bool>>) -> PyResult<()> {
         let envs = &mut *self.envs.write()?;
-        let n = with!(envs, batch => batch.len());
+        let n = envs.envs();
         let mask = mask.unwrap_or_else(|| vec![true; n]);
         if mask.len() != n {
             return Err(errors::env(EnvError::OutOfBounds {
@@ -131,8 +107,7 @@ impl Batch {
                 bound: format!("of length {n}"),
             }));
         }
-        py.detach(|| with!(envs, batch => batch.reset(&mask)))
-            .map_err(errors::env)
+        py.detach(|| envs.reset(&mask)).map_err(errors::env)
     }
 
     /// One step of all environments; `actions` (n, k).
@@ -140,8 +115,7 @@ impl Batch {
         let envs = &mut *self.envs.write()?;
         // A copy, as other threads may write to the array meanwhile.
         let actions = copied(&actions);
-        py.detach(|| with!(envs, batch => batch.step(&actions)))
-            .map_err(errors::env)
+        py.detach(|| envs.step(&actions)).map_err(errors::env)
     }
 
     /// One step of a batch of one, and what it shows, as [`Self::one`]; without letting go of the
@@ -152,26 +126,26 @@ impl Batch {
         actions: PyReadonlyArrayDyn<'py, f32>,
     ) -> PyResult<Bound<'py, PyTuple>> {
         let envs = &mut *self.envs.write()?;
-        if with!(envs, batch => has_long_steps(batch)) {
+        if self.long_steps {
             let actions = copied(&actions);
-            py.detach(|| with!(envs, batch => batch.step(&actions)))
+            py.detach(|| envs.step(&actions))
         } else if let Ok(actions) = actions.as_slice() {
-            with!(envs, batch => batch.step(actions))
+            envs.step(actions)
         } else {
-            with!(envs, batch => batch.step(&copied(&actions)))
+            envs.step(&copied(&actions))
         }
         .map_err(errors::env)?;
-        self.show_one(py, envs)
+        self.show_one(py, &**envs)
     }
 
     /// What environment 0 showed last: (senses, reward, terminated, truncated, info).
     fn one<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        self.show_one(py, &*self.envs.read()?)
+        self.show_one(py, &**self.envs.read()?)
     }
 
     /// Achieved and desired goal of environment 0 (2,) \[m\].
     fn one_goals<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray1<f32>>>> {
-        Ok(first(&*self.envs.read()?).map_or_else(Vec::new, |record| {
+        Ok(self.envs.read()?.record(0).map_or_else(Vec::new, |record| {
             [record.standing.achieved, record.standing.desired]
                 .map(|x| PyArray1::from_slice(py, &x))
                 .into()
@@ -182,21 +156,17 @@ impl Batch {
     /// goals, rewards, terminated, truncated, outcome codes, facts, reward terms.
     fn all<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let envs = &*self.envs.read()?;
-        self.arrays(
-            py,
-            &with!(envs, batch => batch.records().collect::<Vec<_>>()),
-        )
+        let records: Vec<&Record> = (0..envs.envs()).filter_map(|i| envs.record(i)).collect();
+        self.arrays(py, &records)
     }
 
     /// The same for the episodes that ended within the last step and were begun anew, and their
     /// indices; None if there are none.
     fn ended<'py>(&self, py: Python<'py>) -> PyResult<Option<Ended<'py>>> {
         let envs = &*self.envs.read()?;
-        let ended: Vec<(usize, &Record)> = with!(envs, batch => batch
-            .last()
-            .enumerate()
-            .filter_map(|(i, last)| Some((i, &last?.record)))
-            .collect());
+        let ended: Vec<(usize, &Record)> = (0..envs.envs())
+            .filter_map(|i| Some((i, envs.final_record(i)?)))
+            .collect();
         if ended.is_empty() {
             return Ok(None);
         }
@@ -209,40 +179,35 @@ impl Batch {
 
     /// Bytes from which environment `i` continues bit for bit.
     fn save<'py>(&self, py: Python<'py>, i: usize) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = with!(&*self.envs.read()?, batch => batch.save(i)).map_err(errors::env)?;
+        let bytes = self.envs.read()?.save(i).map_err(errors::env)?;
         Ok(PyBytes::new(py, &bytes))
     }
 
     /// Continues environment `i` from bytes.
     fn load(&self, i: usize, bytes: &[u8]) -> PyResult<()> {
-        with!(&mut *self.envs.write()?, batch => batch.load(i, bytes)).map_err(errors::env)
+        self.envs.write()?.load(i, bytes).map_err(errors::env)
     }
 
     /// A number that two states share only if they are the same to the bit.
     fn state_hash(&self, i: usize) -> PyResult<u64> {
-        with!(&*self.envs.read()?, batch => {
-            batch.state(i).and_then(|state| snapshot::hash(&**batch.task(), state))
-        })
-        .map_err(errors::env)
+        self.envs.read()?.state_hash(i).map_err(errors::env)
     }
 
     /// The case of environment `i`, in the task's own words.
     fn case<'py>(&self, py: Python<'py>, i: usize) -> PyResult<Bound<'py, PyDict>> {
-        with!(&*self.envs.read()?, batch => case(py, batch, i))
+        let case = self.envs.read()?.case(i).map_err(errors::env)?;
+        case_dict(py, &case)
     }
 
     /// The recorded way of the hand of environment `i`, one row a control step \[m\].
     fn trail<'py>(&self, py: Python<'py>, i: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        with!(&*self.envs.read()?, batch => {
-            batch.task().trail(py, batch.state(i).map_err(errors::env)?)
-        })
+        let trail = self.envs.read()?.trail(i).map_err(errors::env)?;
+        array2(py, &trail)
     }
 
     /// How many moments of environment `i` were recorded since its reset.
     fn moments(&self, i: usize) -> PyResult<usize> {
-        let envs = &*self.envs.read()?;
-        with!(envs, batch => batch.state(i).map(|state| batch.task().moments(state)))
-            .map_err(errors::env)
+        self.envs.read()?.moments(i).map_err(errors::env)
     }
 
     /// A picture (height, width, 3) of environment `i`, now or at a recorded moment.
@@ -257,12 +222,7 @@ impl Batch {
         frame: Option<usize>,
     ) -> PyResult<Bound<'py, PyArray3<u8>>> {
         let envs = &*self.envs.read()?;
-        let draw = || {
-            let view = camera.parse::<View>()?;
-            with!(envs, batch => {
-                batch.task().picture(batch.state(i)?, view, [width, height], frame)
-            })
-        };
+        let draw = || envs.picture(i, camera.parse::<View>()?, [width, height], frame);
         let image = py.detach(draw).map_err(errors::env)?;
         PyArray1::from_vec(py, image.into_raw()).reshape([height as usize, width as usize, 3])
     }
@@ -276,13 +236,8 @@ impl Batch {
         size: u32,
     ) -> PyResult<Option<Bound<'py, PyArray3<u8>>>> {
         let envs = &*self.envs.read()?;
-        let draw = || {
-            with!(envs, batch => {
-                let last = batch.last().nth(i).flatten();
-                last.map(|last| batch.task().picture(&last.state, View::Eye, [size; 2], None))
-            })
-        };
-        let Some(image) = py.detach(draw).transpose().map_err(errors::env)? else {
+        let draw = || envs.final_picture(i, View::Eye, [size; 2]);
+        let Some(image) = py.detach(draw).map_err(errors::env)? else {
             return Ok(None);
         };
         let shape = [size as usize, size as usize, 3];
@@ -294,17 +249,17 @@ impl Batch {
     /// Threads that step the batch.
     #[getter]
     fn threads(&self) -> PyResult<usize> {
-        Ok(with!(&*self.envs.read()?, batch => batch.threads()))
+        Ok(self.envs.read()?.threads())
     }
 }
 
 impl Batch {
-    fn show_one<'py>(&self, py: Python<'py>, envs: &AnyBatch) -> PyResult<Bound<'py, PyTuple>> {
+    fn show_one<'py>(&self, py: Python<'py>, envs: &dyn AnyBatch) -> PyResult<Bound<'py, PyTuple>> {
         let Some(Record {
             senses,
             standing,
             step,
-        }) = first(envs)
+        }) = envs.record(0)
         else {
             return Ok(PyTuple::empty(py));
         };
@@ -360,32 +315,6 @@ fn named<'py, T: IntoPyObject<'py> + Copy>(
         dict.set_item(name, value)?;
     }
     Ok(dict)
-}
-
-fn request<T: PyTask>(
-    batch: &mut babble_env::Batch<T>,
-    i: usize,
-    asked: &Bound<'_, PyDict>,
-) -> PyResult<()> {
-    batch.request(i, T::request(asked)?).map_err(errors::env)
-}
-
-fn case<'py, T: PyTask>(
-    py: Python<'py>,
-    batch: &babble_env::Batch<T>,
-    i: usize,
-) -> PyResult<Bound<'py, PyDict>> {
-    T::case(py, batch.state(i).map_err(errors::env)?)
-}
-
-/// Whether one step outlasts handing it to a thread.
-fn has_long_steps<T: Task>(batch: &babble_env::Batch<T>) -> bool {
-    batch.task().min_per_thread() == 1
-}
-
-/// What environment 0 showed last.
-fn first(envs: &AnyBatch) -> Option<&Record> {
-    with!(envs, batch => batch.records().next())
 }
 
 /// The numbers of an array, in the order of C.

@@ -1,27 +1,99 @@
 //! Between Python's and Rust's values.
 
-use babble_env::task::{Request, State};
-use babble_env::{EnvError, Task};
+use babble_env::case::CasePart;
+use babble_env::{CaseValue, CaseValues, EnvError, Options};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyTuple};
+use serde_json::{Number, Value};
 
 use crate::errors;
 
-/// What each task says in dicts and arrays of its own.
-pub(crate) trait PyTask: Task {
-    /// What a dict asks of the cases to come; what it does not have is drawn.
-    fn request(asked: &Bound<'_, PyDict>) -> PyResult<Request<Self>>;
+/// Options by name, as JSON has them.
+pub(crate) fn options(given: &Bound<'_, PyDict>) -> PyResult<Options> {
+    given
+        .iter()
+        .map(|(name, value)| {
+            let name: String = name.extract()?;
+            let value = option_value(&name, &value)?;
+            Ok((name, value))
+        })
+        .collect()
+}
 
-    /// The case as the dict that `reset(options=...)` takes.
-    fn case<'py>(py: Python<'py>, state: &State<Self>) -> PyResult<Bound<'py, PyDict>>;
+fn option_value(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
+    // NumPy's scalars and arrays become Python's.
+    let plain = match value.getattr_opt(intern!(value.py(), "tolist"))? {
+        Some(convert) => convert.call0()?,
+        None => value.clone(),
+    };
+    let refused = || {
+        let value = value
+            .repr()
+            .map_or_else(|_| "a value".to_owned(), |text| text.to_string());
+        errors::env(EnvError::OptionText {
+            option: name.to_owned(),
+            value,
+        })
+    };
+    if plain.is_none() {
+        Ok(Value::Null)
+    } else if plain.is_instance_of::<PyBool>() {
+        Ok(plain.extract::<bool>()?.into())
+    } else if plain.is_instance_of::<PyInt>() {
+        plain
+            .extract::<i64>()
+            .map(Value::from)
+            .map_err(|_| refused())
+    } else if plain.is_instance_of::<PyFloat>() {
+        let number = Number::from_f64(plain.extract()?);
+        number.map(Value::Number).ok_or_else(refused)
+    } else if let Ok(text) = plain.extract::<String>() {
+        Ok(text.into())
+    } else if plain.is_instance_of::<PyList>() || plain.is_instance_of::<PyTuple>() {
+        let items = plain.try_iter()?.map(|item| option_value(name, &item?));
+        items.collect::<PyResult<Vec<_>>>().map(Value::Array)
+    } else {
+        Err(refused())
+    }
+}
 
-    /// The recorded way of the hand, one row a control step \[m\].
-    fn trail<'py>(
-        &self,
-        py: Python<'py>,
-        state: &State<Self>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>>;
+/// A case as the dict that `reset(options=...)` takes.
+pub(crate) fn case_dict<'py>(py: Python<'py>, case: &CaseValues) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    for (name, value) in case.iter() {
+        match value {
+            CaseValue::Absent => dict.set_item(name, py.None())?,
+            CaseValue::Number(number) => dict.set_item(name, number)?,
+            CaseValue::Numbers(numbers) => dict.set_item(name, PyTuple::new(py, numbers)?)?,
+        }
+    }
+    Ok(dict)
+}
+
+/// What a dict asks of the cases to come.
+pub(crate) fn case_values(
+    parts: &'static [CasePart],
+    asked: &Bound<'_, PyDict>,
+) -> PyResult<CaseValues> {
+    let values: Vec<(String, CaseValue)> = asked
+        .iter()
+        .map(|(name, value)| {
+            let value = if value.is_none() {
+                CaseValue::Absent
+            } else if let Ok(number) = value.extract() {
+                CaseValue::Number(number)
+            } else {
+                CaseValue::Numbers(value.extract()?)
+            };
+            Ok((name.extract()?, value))
+        })
+        .collect::<PyResult<_>>()?;
+    let named = values
+        .iter()
+        .map(|(name, value)| (name.as_str(), value.clone()));
+    CaseValues::read(parts, named).map_err(errors::env)
 }
 
 /// A value as JSON.
@@ -36,19 +108,34 @@ pub(crate) fn rows<T: numpy::Element + Copy, const N: usize>(
     what: &'static str,
 ) -> PyResult<Vec<[T; N]>> {
     let array = array.as_array();
-    if array.ncols() != N {
-        let error = EnvError::OutOfBounds {
-            option: what,
-            value: format!("an array of shape {:?}", array.shape()),
-            bound: format!("of shape (n, {N})"),
-        };
-        return Err(errors::env(error));
-    }
+    check_width(array.shape(), N, what)?;
     Ok(array
         .rows()
         .into_iter()
         .map(|row| std::array::from_fn(|i| row[i]))
         .collect())
+}
+
+/// Rows of `width` numbers in a (n, width) array.
+pub(crate) fn wide_rows<T: numpy::Element + Copy>(
+    array: &PyReadonlyArray2<'_, T>,
+    width: usize,
+    what: &'static str,
+) -> PyResult<Vec<Vec<T>>> {
+    let array = array.as_array();
+    check_width(array.shape(), width, what)?;
+    Ok(array.rows().into_iter().map(|row| row.to_vec()).collect())
+}
+
+fn check_width(shape: &[usize], width: usize, what: &'static str) -> PyResult<()> {
+    if shape.last() == Some(&width) {
+        return Ok(());
+    }
+    Err(errors::env(EnvError::OutOfBounds {
+        option: what,
+        value: format!("an array of shape {shape:?}"),
+        bound: format!("of shape (n, {width})"),
+    }))
 }
 
 /// A (n, N) array of rows.

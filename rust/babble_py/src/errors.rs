@@ -24,9 +24,10 @@ pub(crate) fn env(error: EnvError) -> PyErr {
             ActionError::new_err(text)
         }
         EnvError::NeedsReset { .. } => ResetNeeded::new_err(text),
-        EnvError::Case { .. } | EnvError::NoLegalCase { .. } | EnvError::NoGraspCase { .. } => {
-            ScenarioError::new_err(text)
-        }
+        EnvError::Case { .. }
+        | EnvError::CaseValue { .. }
+        | EnvError::NoLegalCase { .. }
+        | EnvError::NoGraspCase { .. } => ScenarioError::new_err(text),
         EnvError::Snapshot { .. } => SnapshotError::new_err(text),
         EnvError::Interrupted => signals::raised(),
         EnvError::Threads { .. } => PyRuntimeError::new_err(text),

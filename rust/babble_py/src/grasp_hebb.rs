@@ -3,13 +3,13 @@
 use babble_agent::AgentError;
 use babble_agent::grasp::{self, GraspBabbling, GraspHebbConfig};
 use babble_env::tasks::grasp::FOVEA_NEURONS;
-use babble_env::{Config, EnvError, Pool};
+use babble_env::{Config, EnvError, Executor};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
-use crate::grasp::GraspTask;
 use crate::guarded::Guarded;
+use crate::task::Task;
 use crate::{convert, errors, signals};
 
 /// A network that learns by babbling with the object in the hand. In `with hebb:` no other thread
@@ -27,7 +27,7 @@ struct Learner {
     babbling: GraspBabbling,
     /// What this object's own babbling left behind.
     babbled: Vec<grasp::Experience>,
-    pool: Pool,
+    pool: Executor,
 }
 
 impl Learner {
@@ -40,7 +40,7 @@ impl Learner {
             network,
             babbling,
             babbled: Vec::new(),
-            pool: signals::pool(threads)?,
+            pool: signals::executor(threads)?,
         })
     }
 
@@ -95,10 +95,10 @@ impl GraspHebb {
 
     /// Babbles on `task` until `n` more objects were kept, and learns from them; interrupted, it has
     /// done neither.
-    fn learn(&self, py: Python<'_>, task: &GraspTask, n: usize) -> PyResult<()> {
+    fn learn(&self, py: Python<'_>, task: &Task, n: usize) -> PyResult<()> {
         let learner = &mut *self.learner.write()?;
-        py.detach(|| learner.learn(&task.task, n))
-            .map_err(errors::agent)
+        let task = task.downcast::<babble_env::GraspTask>()?;
+        py.detach(|| learner.learn(&task, n)).map_err(errors::agent)
     }
 
     /// What this object's own babbling left behind: eye (n, 2), fovea (n, 441), arm (n, 2), hand

@@ -2,13 +2,14 @@
 
 use babble_agent::store::{self, Metadata};
 use babble_agent::{AgentError, Babbling, HebbConfig, Variant};
-use babble_env::{Config, Pool};
+use babble_env::{Config, Executor};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
 use crate::guarded::Guarded;
-use crate::reach::{ReachTask, fidelity};
+use crate::reach::fidelity;
+use crate::task::Task;
 use crate::{convert, errors, reach, signals};
 
 /// Experiences that are learnt together.
@@ -28,7 +29,7 @@ pub(crate) struct Hebb {
 struct Learner {
     network: babble_agent::Hebb,
     babbling: Babbling,
-    pool: Pool,
+    pool: Executor,
 }
 
 impl Learner {
@@ -54,7 +55,7 @@ impl Hebb {
         let learner = Learner {
             network: babble_agent::Hebb::new(config).map_err(errors::agent)?,
             babbling: Babbling::new(seed, fidelity(quasi_static)),
-            pool: signals::pool(threads).map_err(errors::env)?,
+            pool: signals::executor(threads).map_err(errors::env)?,
         };
         Ok(Self {
             learner: Guarded::new("agent", learner),
@@ -90,9 +91,10 @@ impl Hebb {
 
     /// Babbles on `task` until `legal` more movements were legal, and learns from them; interrupted,
     /// it has done neither.
-    fn learn(&self, py: Python<'_>, task: &ReachTask, legal: usize) -> PyResult<()> {
+    fn learn(&self, py: Python<'_>, task: &Task, legal: usize) -> PyResult<()> {
         let learner = &mut *self.learner.write()?;
-        py.detach(|| learner.learn(&task.task, legal))
+        let task = task.downcast::<babble_env::ReachTask>()?;
+        py.detach(|| learner.learn(&task, legal))
             .map_err(errors::agent)
     }
 
@@ -196,7 +198,7 @@ impl Hebb {
         let learner = Learner {
             network,
             babbling: Babbling::resume(seed, fidelity(quasi_static), movements, legal),
-            pool: signals::pool(threads).map_err(errors::env)?,
+            pool: signals::executor(threads).map_err(errors::env)?,
         };
         let agent = Self {
             learner: Guarded::new("agent", learner),

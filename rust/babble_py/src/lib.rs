@@ -14,6 +14,7 @@ mod guarded;
 mod hebb;
 mod reach;
 mod signals;
+mod task;
 
 use pyo3::prelude::*;
 
@@ -29,13 +30,15 @@ mod _core {
     #[pymodule_export]
     use crate::config::{complete_config, load_config, outcomes, profile_config, profiles};
     #[pymodule_export]
-    use crate::grasp::GraspTask;
+    use crate::grasp::{grasp_posture, hold, looked_at};
     #[pymodule_export]
     use crate::grasp_hebb::GraspHebb;
     #[pymodule_export]
     use crate::hebb::Hebb;
     #[pymodule_export]
-    use crate::reach::ReachTask;
+    use crate::reach::{movement, oracle, place, plan, posture_at, scripted};
+    #[pymodule_export]
+    use crate::task::{Task, registry_json};
     use pyo3::prelude::*;
 
     #[pymodule_init]

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use babble_env::{EnvError, Pool};
+use babble_env::{EnvError, Executor};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 
@@ -11,9 +11,9 @@ thread_local! {
     static RAISED: Cell<Option<PyErr>> = const { Cell::new(None) };
 }
 
-/// A pool of threads whose long work ends when the handler of a signal raises.
-pub(crate) fn pool(threads: usize) -> Result<Pool, EnvError> {
-    Ok(Pool::new(threads)?.interrupted_by(handler_raises))
+/// An executor whose long work ends when the handler of a signal raises.
+pub(crate) fn executor(threads: usize) -> Result<Executor, EnvError> {
+    Ok(Executor::new(threads)?.interrupted_by(handler_raises))
 }
 
 /// The exception of work that was interrupted.

@@ -1,7 +1,7 @@
 //! Babbling with the object in the hand: the enclosure reflex closes the hand, the arm moves.
 
 use babble_env::tasks::grasp::{FOVEA_NEURONS, GraspTask, InHand};
-use babble_env::{EnvError, Pool, Purpose, Stop, Stream};
+use babble_env::{EnvError, Executor, Purpose, Stop, Stream};
 use rayon::prelude::*;
 
 use crate::error::AgentError;
@@ -88,7 +88,7 @@ impl GraspBabbling {
         &mut self,
         task: &GraspTask,
         n: usize,
-        pool: &mut Pool,
+        pool: &mut Executor,
     ) -> Result<Vec<Experience>, AgentError> {
         let mut ahead = self.clone();
         let found = pool.run_until(|stop| ahead.babble(task, n, stop))??;

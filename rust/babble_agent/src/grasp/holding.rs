@@ -1,7 +1,7 @@
 //! How well the reflex holds: objects put at the palm, carried about without support.
 
 use babble_env::tasks::grasp::{GraspTask, InHand};
-use babble_env::{EnvError, Pool, Purpose, Stop, Stream};
+use babble_env::{EnvError, Executor, Purpose, Stop, Stream};
 use rayon::prelude::*;
 
 /// Time that the reflex closes the hand before the support goes \[s\].
@@ -31,7 +31,7 @@ pub fn trials(
     task: &GraspTask,
     diameter: f64,
     n: usize,
-    pool: &mut Pool,
+    pool: &mut Executor,
 ) -> Result<Vec<Trial>, EnvError> {
     pool.run_until(|stop| {
         (0..n as u64)

@@ -8,34 +8,34 @@ use std::sync::Arc;
 
 use babble_env::batch::Record;
 use babble_env::{
-    Autoreset, Batch, Config, Control, Options, Purpose, ReachTask, Reward, Stream, Task,
+    Autoreset, Batch, Config, Control, Purpose, ReachOptions, ReachTask, Reward, Stream, Task,
 };
 
 /// Options with that control, else the default ones.
-pub(crate) fn control(control: Control) -> Options {
-    Options {
+pub(crate) fn control(control: Control) -> ReachOptions {
+    ReachOptions {
         control,
-        ..Options::default()
+        ..ReachOptions::default()
     }
 }
 
 /// Options of the goal form.
-pub(crate) fn goal(control: Control) -> Options {
-    Options {
+pub(crate) fn goal(control: Control) -> ReachOptions {
+    ReachOptions {
         control,
         goal: true,
         reward: Reward::Sparse,
-        ..Options::default()
+        ..ReachOptions::default()
     }
 }
 
-pub(crate) fn task(options: Options) -> Arc<ReachTask> {
+pub(crate) fn task(options: ReachOptions) -> Arc<ReachTask> {
     Arc::new(ReachTask::new(Config::profile("paper").unwrap(), options).unwrap())
 }
 
 /// n environments of reaching, reset from the seeds `seed`, `seed` + 1, …
 pub(crate) fn batch(
-    options: Options,
+    options: ReachOptions,
     n: usize,
     autoreset: Autoreset,
     threads: usize,

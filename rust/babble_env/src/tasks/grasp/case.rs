@@ -6,8 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use super::numbers::RegionNumbers;
 use super::task::GraspTask;
+use crate::case::CaseValues;
 use crate::error::EnvError;
 use crate::stream::Stream;
+use crate::tasks::reach::case::{check_obstacle, obstacle_from, obstacle_value};
 
 /// How often a case is drawn before the config is called impossible.
 pub(super) const MAX_TRIES: u32 = 10_000;
@@ -30,6 +32,18 @@ pub struct GraspCase {
 }
 
 impl GraspCase {
+    /// The case as named values.
+    pub(super) fn values(&self) -> CaseValues {
+        let mut values = CaseValues::default()
+            .with("start", self.start)
+            .with("object", self.object)
+            .with("diameter", self.diameter);
+        if let Some(goal) = self.goal {
+            values = values.with("goal", goal);
+        }
+        values.with("obstacle", obstacle_value(self.obstacle.as_ref()))
+    }
+
     /// Radius of the object \[m\].
     #[must_use]
     pub fn radius(&self) -> f64 {
@@ -54,6 +68,17 @@ pub struct GraspRequest {
 }
 
 impl GraspRequest {
+    /// What named values ask.
+    pub(super) fn from_values(task: &GraspTask, asked: &CaseValues) -> Self {
+        Self {
+            start: asked.numbers("start"),
+            object: asked.numbers("object"),
+            diameter: asked.number("diameter"),
+            goal: asked.numbers("goal"),
+            obstacle: obstacle_from(asked, task.config.body.obstacle.radius_m),
+        }
+    }
+
     /// The next case that fulfils the request.
     ///
     /// # Errors
@@ -130,9 +155,7 @@ impl GraspRequest {
                 problem: format!("{diameter} m is not in [0.005, 0.2]"),
             });
         }
-        self.obstacle
-            .as_ref()
-            .map_or(Ok(()), crate::tasks::reach::case::check_obstacle)
+        self.obstacle.as_ref().map_or(Ok(()), check_obstacle)
     }
 }
 

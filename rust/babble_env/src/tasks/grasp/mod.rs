@@ -3,6 +3,7 @@
 pub mod case;
 mod check;
 mod enclosure;
+mod entry;
 mod episode;
 mod in_hand;
 mod numbers;
@@ -15,6 +16,7 @@ mod task;
 
 pub use case::{GraspCase, GraspRequest};
 pub use enclosure::{Contacts, Enclosure, Grip};
+pub(crate) use entry::ENTRY;
 pub use episode::{Drawn, FACTS, Grasp, GraspState, goal_reward};
 pub use in_hand::InHand;
 pub use numbers::{GraspNumbers, RegionNumbers};

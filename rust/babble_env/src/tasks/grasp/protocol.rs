@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::case::{GraspCase, GraspRequest};
 use super::task::GraspTask;
 use crate::error::EnvError;
-use crate::pool::Pool;
+use crate::executor::Executor;
 use crate::stream::{Purpose, Stream};
 
 /// Distances of Table II's objects from the shoulder \[m\] and their directions \[deg\] \[C\].
@@ -36,7 +36,7 @@ pub fn random(
     n: usize,
     seed: u64,
     purpose: Purpose,
-    pool: &mut Pool,
+    pool: &mut Executor,
 ) -> Result<Vec<GraspCase>, EnvError> {
     let request = GraspRequest::default();
     pool.run_until(|stop| {

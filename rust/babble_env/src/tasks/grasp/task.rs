@@ -1,6 +1,7 @@
 //! Everything about grasping that stays the same within and between episodes.
 
 use babble_body::config::Muscles;
+use babble_body::description::LinkDescription;
 use babble_body::joints::Joint;
 use babble_body::robot::World;
 use babble_body::{PlanarArm, Robot};
@@ -8,19 +9,23 @@ use babble_eye::Eye;
 use image::RgbImage;
 use nalgebra::{Vector2, Vector3};
 use serde::Serialize;
+use serde_json::{Value, json};
 
-use super::case::MAX_TRIES;
-use super::episode::{Grasp, GraspState};
+use super::case::{GraspRequest, MAX_TRIES};
+use super::entry::ENTRY;
+use super::episode::{Grasp, GraspState, goal_reward};
 use super::numbers::RegionNumbers;
 use super::options::{GraspOptions, Region};
 use super::sight::FOVEA_NEURONS;
-use super::{picture, spec};
+use super::{picture, protocol, spec};
+use crate::case::{CasePart, CaseValues};
 use crate::config::Config;
 use crate::error::EnvError;
+use crate::executor::Executor;
 use crate::options::{Control, Reward};
 use crate::picture::View;
 use crate::spec::Spec;
-use crate::stream::Stream;
+use crate::stream::{Purpose, Stream};
 use crate::task::Task;
 
 /// Params of the grasping task.
@@ -43,6 +48,7 @@ impl Task for GraspTask {
 
     const NAME: &'static str = "grasping";
     const MAGIC: [u8; 4] = *b"BBGS";
+    const CASE_PARTS: &'static [CasePart] = ENTRY.case_parts;
 
     fn min_per_thread(&self) -> usize {
         1
@@ -73,6 +79,65 @@ impl Task for GraspTask {
             ..
         } = &self.config;
         (profile, body, grasp, options)
+    }
+
+    fn config(&self) -> &Config {
+        &self.config
+    }
+
+    fn quantities(&self) -> Value {
+        json!({
+            "ranges": self.robot.ranges(),
+            "reflex": self.reflex(),
+            "delta_posture": self.config.grasp.delta_posture_deg.to_radians(),
+        })
+    }
+
+    fn robot(&self) -> Vec<LinkDescription> {
+        self.robot.description()
+    }
+
+    fn goal_reward(&self, achieved: &[f32], desired: &[f32]) -> f64 {
+        goal_reward(
+            &self.config,
+            [0, 1].map(|i| achieved[i]),
+            [0, 1].map(|i| desired[i]),
+        )
+    }
+
+    fn request(&self, asked: &CaseValues) -> GraspRequest {
+        GraspRequest::from_values(self, asked)
+    }
+
+    fn case(&self, state: &GraspState) -> CaseValues {
+        state.case.values()
+    }
+
+    fn cases(
+        &self,
+        name: &str,
+        n: usize,
+        seed: u64,
+        purpose: Purpose,
+        executor: &mut Executor,
+    ) -> Result<Vec<Option<CaseValues>>, EnvError> {
+        let protocol = ENTRY.protocol(name)?;
+        let cases = match (protocol.random, protocol.name) {
+            (true, _) => {
+                let drawn = protocol::random(self, n, seed, purpose, executor)?;
+                drawn.into_iter().map(Some).collect()
+            }
+            (false, "fig7") => protocol::fig7(self),
+            (false, _) => protocol::table2(self),
+        };
+        Ok(cases
+            .iter()
+            .map(|case| Some(case.as_ref()?.values()))
+            .collect())
+    }
+
+    fn trail(&self, state: &GraspState) -> Vec<[f64; 2]> {
+        state.trail.iter().map(|moment| moment.palm).collect()
     }
 
     fn moments(&self, state: &GraspState) -> usize {

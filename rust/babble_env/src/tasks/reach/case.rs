@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::movement::{Fidelity, MovementPath};
 use super::task::ReachTask;
+use crate::case::{CaseValue, CaseValues};
 use crate::error::EnvError;
 use crate::stream::Stream;
 
@@ -118,6 +119,14 @@ impl ReachCase {
         Err(EnvError::NoLegalCase { tries: MAX_TRIES })
     }
 
+    /// The case as named values.
+    pub(super) fn values(&self) -> CaseValues {
+        let values = CaseValues::default()
+            .with("start", self.hand)
+            .with("target", self.target);
+        values.with("obstacle", obstacle_value(self.obstacle.as_ref()))
+    }
+
     /// Distance from start to target \[m\].
     #[must_use]
     pub fn distance(&self) -> f64 {
@@ -200,6 +209,20 @@ pub enum ObstacleRequest {
 }
 
 impl CaseRequest {
+    /// What named values ask: without `obstacle` it stands halfway.
+    pub(super) fn from_values(task: &ReachTask, asked: &CaseValues) -> Self {
+        let radius = task.config.body.obstacle.radius_m;
+        Self {
+            start: asked.numbers("start"),
+            target: asked.numbers("target"),
+            obstacle: match (asked.get("obstacle"), obstacle_from(asked, radius)) {
+                (_, Some(obstacle)) => ObstacleRequest::At(obstacle),
+                (None, None) => ObstacleRequest::Halfway,
+                (Some(_), None) => ObstacleRequest::Absent,
+            },
+        }
+    }
+
     /// Checks what is given by itself.
     pub(super) fn check(&self, task: &ReachTask) -> Result<(), EnvError> {
         for (what, point) in [("start", self.start), ("target", self.target)] {
@@ -332,4 +355,22 @@ pub fn obstacle_at(task: &ReachTask, centre: [f64; 2]) -> Obstacle {
         centre: centre.into(),
         radius: task.config.body.obstacle.radius_m,
     }
+}
+
+/// The obstacle among named values: (x, y, radius), or (x, y) with the config's radius \[m\].
+pub(crate) fn obstacle_from(asked: &CaseValues, radius: f64) -> Option<Obstacle> {
+    let given = asked.numbers("obstacle");
+    let [x, y, radius] =
+        given.or_else(|| asked.numbers("obstacle").map(|[x, y]| [x, y, radius]))?;
+    Some(Obstacle {
+        centre: [x, y].into(),
+        radius,
+    })
+}
+
+/// An obstacle as a named value.
+pub(crate) fn obstacle_value(obstacle: Option<&Obstacle>) -> CaseValue {
+    obstacle.map_or(CaseValue::Absent, |o| {
+        [o.centre.x, o.centre.y, o.radius].into()
+    })
 }

@@ -9,7 +9,7 @@ pub const MAX_EPISODE_STEPS: u32 = 240;
 
 /// The choices a user makes when a reaching environment is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Options {
+pub struct ReachOptions {
     /// Meaning of the action.
     pub control: Control,
     /// What is rewarded.
@@ -24,7 +24,7 @@ pub struct Options {
     pub record: bool,
 }
 
-impl Default for Options {
+impl Default for ReachOptions {
     fn default() -> Self {
         Self {
             control: Control::DeltaPosture,

@@ -7,7 +7,7 @@ use super::case::ReachCase;
 use super::movement::Fidelity;
 use super::task::ReachTask;
 use crate::error::EnvError;
-use crate::pool::Pool;
+use crate::executor::Executor;
 use crate::stream::{Purpose, Stream};
 
 /// Targets of Fig. 4.
@@ -25,7 +25,7 @@ pub fn table1(
     n: usize,
     seed: u64,
     purpose: Purpose,
-    pool: &mut Pool,
+    pool: &mut Executor,
 ) -> Result<Vec<ReachCase>, EnvError> {
     pool.run_until(|stop| {
         (0..n as u64)

@@ -1,22 +1,28 @@
 //! Everything about reaching that stays the same within and between episodes.
 
+use babble_body::description::{self, LinkDescription};
 use babble_body::visual;
 use babble_body::{ArmState, Body, ContactWatch, Dynamics, Obstacle, PlanarArm};
 use babble_eye::{Eye, Gaze, Pinhole};
 use image::RgbImage;
 use nalgebra::{Vector2, Vector3};
 use serde::Serialize;
+use serde_json::{Value, json};
 
-use super::case::ReachCase;
-use super::episode::{Reach, ReachState, SENSES};
-use super::options::Options;
-use super::{picture, spec};
+use super::case::{CaseRequest, ReachCase};
+use super::entry::ENTRY;
+use super::episode::{Reach, ReachState, SENSES, goal_reward};
+use super::options::ReachOptions;
+use super::{picture, protocol, spec};
+use crate::case::{CasePart, CaseValues};
 use crate::config::{Config, ReachNumbers};
 use crate::error::EnvError;
+use crate::executor::Executor;
 use crate::options::{Control, Reward, check_max_episode_steps};
 use crate::outcome::Outcome;
 use crate::picture::View;
 use crate::spec::Spec;
+use crate::stream::Purpose;
 use crate::task::Task;
 
 /// Params of the reaching task.
@@ -25,7 +31,7 @@ pub struct ReachTask {
     /// The config it was made from.
     pub config: Config,
     /// The user's choices.
-    pub options: Options,
+    pub options: ReachOptions,
     /// Kinematics.
     pub arm: PlanarArm,
     /// Equations of motion.
@@ -47,6 +53,7 @@ impl Task for ReachTask {
 
     const NAME: &'static str = "reaching";
     const MAGIC: [u8; 4] = *b"BBRS";
+    const CASE_PARTS: &'static [CasePart] = ENTRY.case_parts;
 
     fn min_per_thread(&self) -> usize {
         // A whole movement, or a control step of about a microsecond.
@@ -70,7 +77,7 @@ impl Task for ReachTask {
 
     fn fingerprint(&self) -> impl Serialize {
         // Recording is for pictures and changes no episode.
-        let options = Options {
+        let options = ReachOptions {
             record: false,
             ..self.options
         };
@@ -86,6 +93,64 @@ impl Task for ReachTask {
             reach,
         };
         (config, options)
+    }
+
+    fn config(&self) -> &Config {
+        &self.config
+    }
+
+    fn quantities(&self) -> Value {
+        let width = |i: usize| self.arm.upper_limit[i] - self.arm.lower[i];
+        json!({
+            "joint_range": [width(0), width(1)],
+            "delta_posture": self.config.reach.delta_posture_deg.to_radians(),
+            "b_range": self.config.reach.b_range,
+        })
+    }
+
+    fn robot(&self) -> Vec<LinkDescription> {
+        description::reaching(&self.config.body).to_vec()
+    }
+
+    fn goal_reward(&self, achieved: &[f32], desired: &[f32]) -> f64 {
+        goal_reward(
+            &self.config,
+            [0, 1].map(|i| achieved[i]),
+            [0, 1].map(|i| desired[i]),
+        )
+    }
+
+    fn request(&self, asked: &CaseValues) -> CaseRequest {
+        CaseRequest::from_values(self, asked)
+    }
+
+    fn case(&self, state: &ReachState) -> CaseValues {
+        state.case.values()
+    }
+
+    fn cases(
+        &self,
+        name: &str,
+        n: usize,
+        seed: u64,
+        purpose: Purpose,
+        executor: &mut Executor,
+    ) -> Result<Vec<Option<CaseValues>>, EnvError> {
+        let cases = if ENTRY.protocol(name)?.random {
+            let sampled = protocol::table1(self, n, seed, purpose, executor)?;
+            sampled.into_iter().map(Some).collect()
+        } else {
+            protocol::fig4(self)
+        };
+        Ok(cases
+            .iter()
+            .map(|case| Some(case.as_ref()?.values()))
+            .collect())
+    }
+
+    fn trail(&self, state: &ReachState) -> Vec<[f64; 2]> {
+        let tip = |&q| self.arm.fingertip(q).into();
+        state.trail.iter().map(tip).collect()
     }
 
     fn moments(&self, state: &ReachState) -> usize {
@@ -108,7 +173,7 @@ impl ReachTask {
     ///
     /// # Errors
     /// [`EnvError`] naming the field or option that is out of bounds.
-    pub fn new(config: Config, options: Options) -> Result<Self, EnvError> {
+    pub fn new(config: Config, options: ReachOptions) -> Result<Self, EnvError> {
         config.validate()?;
         if options.goal && options.reward == Reward::Progress {
             return Err(EnvError::Option {

@@ -36,13 +36,13 @@ impl Stop {
 ///
 /// A forked child does not have its parent's threads; the pool notices and starts new ones.
 #[derive(Debug)]
-pub struct Pool {
+pub struct Executor {
     threads: usize,
     started: Option<(u32, ThreadPool)>,
     interrupted: fn() -> bool,
 }
 
-impl Pool {
+impl Executor {
     /// A pool of `threads` threads that nothing interrupts.
     ///
     /// # Errors
@@ -118,6 +118,27 @@ impl Pool {
         stop.check().and(result)
     }
 
+    /// The results of `each` for all indices, in their order.
+    ///
+    /// # Errors
+    /// One of those of `each`, after which some were not called; [`EnvError::Interrupted`]; or as
+    /// [`Self::run`].
+    pub fn map<T: Send, E: From<EnvError> + Send>(
+        &mut self,
+        indices: std::ops::Range<usize>,
+        each: impl Fn(usize) -> Result<T, E> + Sync,
+    ) -> Result<Vec<T>, E> {
+        self.run_until(|stop| {
+            indices
+                .into_par_iter()
+                .map(|i| {
+                    stop.check()?;
+                    each(i)
+                })
+                .collect::<Result<Vec<T>, E>>()
+        })?
+    }
+
     /// Does `each` to all items, with their places; to at least `least` of them in a thread.
     ///
     /// # Errors
@@ -191,7 +212,7 @@ impl Pool {
     }
 }
 
-impl Drop for Pool {
+impl Drop for Executor {
     fn drop(&mut self) {
         self.forget_lost();
     }

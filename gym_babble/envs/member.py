@@ -1,4 +1,4 @@
-"""One environment of a core batch: its state and its pictures."""
+"""One member of a core batch: its state and its pictures."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from gym_babble._core import Batch
-    from gym_babble.envs.choices import Choices
+    from gym_babble.envs.interface import Interface
 
-__all__ = ["OneEnv"]
+__all__ = ["BatchMember"]
 
 
-class OneEnv:
+class BatchMember:
     """What belongs to environment `i` of a batch, and not to the batch as a whole."""
 
-    def __init__(self, choices: Choices, batch: Batch, i: int) -> None:
-        self._choices = choices
+    def __init__(self, interface: Interface, batch: Batch, i: int) -> None:
+        self._interface = interface
         self._batch = batch
         self._i = i
         self._shown = 0
@@ -72,7 +72,7 @@ class OneEnv:
         Raises:
             gymnasium.error.ResetNeeded: There was no reset yet.
         """
-        if self._choices.render_mode is None:
+        if self._interface.render_mode is None:
             gymnasium.logger.warn(
                 "render() was called without a render_mode; make the environment with one, "
                 'e.g. render_mode="rgb_array"'
@@ -80,7 +80,7 @@ class OneEnv:
             return None
         if not self.ready:
             raise need_reset()
-        if self._choices.render_mode == "rgb_array":
+        if self._interface.render_mode == "rgb_array":
             return self.frame(None)
         return self.new_frames()
 
@@ -99,10 +99,10 @@ class OneEnv:
 
     def frame(self, moment: int | None) -> NDArray[np.uint8]:
         """The picture (height, width, 3) now, or at a recorded moment."""
-        width, height = self._choices.size
-        return self._batch.render(self._i, self._choices.camera, width, height, moment)
+        width, height = self._interface.size
+        return self._batch.render(self._i, self._interface.camera, width, height, moment)
 
     def retina(self) -> NDArray[np.uint8]:
         """The eye's image in obs="retina"."""
-        size = self._choices.retina_size
+        size = self._interface.retina_size
         return self._batch.render(self._i, "eye", size, size)

@@ -1,0 +1,195 @@
+"""What single and vector environments share: options, spaces, observations, cases asked for."""
+
+from __future__ import annotations
+
+import inspect
+import json
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gym_babble import _core
+from gym_babble.config import ConfigLike, config_json
+from gym_babble.envs.registry import CasePart, task_entry
+from gym_babble.envs.spaces import Spec, observation_space
+from gym_babble.errors import ConfigError, ScenarioError
+
+if TYPE_CHECKING:
+    from gymnasium import spaces
+    from numpy.typing import NDArray
+
+    from gym_babble.envs.registry import TaskEntry
+
+__all__ = ["RENDER_MODES", "SCENARIO_LABELS", "Interface", "check_seed", "check_whole", "document"]
+
+RENDER_MODES = ("human", "rgb_array", "rgb_array_list")
+SCENARIO_LABELS = ("protocol", "index")
+"""Parts of a scenario that say where it is from."""
+
+
+class Interface:
+    """Gymnasium's view of a task: its options, spaces, observations and cases."""
+
+    def __init__(
+        self, task: str, *, config: ConfigLike, render_mode: str | None, options: Mapping[str, Any]
+    ) -> None:
+        self.entry = task_entry(task)
+        if render_mode is not None and render_mode not in RENDER_MODES:
+            raise ConfigError(f"render_mode = {render_mode!r} is not one of {RENDER_MODES}")
+        given = dict(options)
+        if render_mode is not None:
+            given["record"] = True
+        self.task = _core.Task(task, config_json(config), given)
+        self.render_mode = render_mode
+        self.options: dict[str, Any] = self.entry.defaults | given
+        """All options by name."""
+        self.quantities: dict[str, Any] = {
+            name: value if isinstance(value, float) else np.array(value)
+            for name, value in json.loads(self.task.quantities()).items()
+        }
+        """Numbers that agents need, in SI units, by name."""
+        self.spec = Spec.of(self.task)
+        self.observation_space: spaces.Space[Any] = observation_space(
+            self.spec, self.obs, self.retina_size
+        )
+        self.action_space = self.spec.action.box
+        self.outcomes = np.array(_core.outcomes(), dtype=object)
+        """Names by the core's codes."""
+
+    @property
+    def obs(self) -> str:
+        """What an observation consists of."""
+        return str(self.options["obs"])
+
+    @property
+    def retina_size(self) -> int:
+        """Edge of the eye's image [pixel]."""
+        return int(self.options.get("retina_size", 0))
+
+    @property
+    def camera(self) -> str:
+        """Where pictures are taken from."""
+        return str(self.options["camera"])
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of pictures [pixel]."""
+        return int(self.options["width"]), int(self.options["height"])
+
+    @property
+    def render_fps(self) -> int:
+        """Frames a second of a video in real time."""
+        return round(self.spec.control_hz)
+
+    def request(self, options: Any) -> dict[str, Any]:
+        """What `reset(options=...)` asks of the cases to come, as the core takes it.
+
+        Raises:
+            ConfigError: An option is unknown.
+            ScenarioError: A part of the case is not what it should be.
+        """
+        if not isinstance(options, Mapping):
+            raise ConfigError(f"options is a {type(options).__name__}, expected a dict")
+        scenario = options.get("scenario")
+        given = {name: value for name, value in options.items() if name != "scenario"}
+        if scenario is not None:
+            if not isinstance(scenario, Mapping):
+                raise ScenarioError(f"scenario is a {type(scenario).__name__}, expected a Scenario")
+            given = {**scenario, **given}
+        parts = {part.name: part for part in self.entry.case_parts}
+        unknown = set(given) - {*parts, *SCENARIO_LABELS}
+        if unknown:
+            known = ", ".join(("scenario", *parts))
+            raise ConfigError(f"options: {sorted(map(str, unknown))} unknown; there are {known}")
+        return {name: _value(part, given[name]) for name, part in parts.items() if name in given}
+
+    def observation(
+        self,
+        senses: NDArray[np.float32],
+        goals: list[NDArray[np.float32]],
+        retina: NDArray[np.uint8] | None,
+    ) -> Any:
+        """An observation, of one environment or of a batch, from flat senses (…, n)."""
+        if self.obs == "flat":
+            return senses
+        if self.obs == "goal":
+            return {"observation": senses, "achieved_goal": goals[0], "desired_goal": goals[1]}
+        named = {name: senses[..., part] for name, part in self.spec.slices}
+        if retina is not None:
+            named["retina"] = retina  # type: ignore[assignment]
+        return named
+
+    def goal_reward(self, achieved_goal: Any, desired_goal: Any, info: Any) -> Any:
+        """Reward of the goal form for goals (k,) or (..., k), broadcast; `info` is not used.
+
+        Raises:
+            ConfigError: The goals are not k numbers each, or their shapes do not fit.
+        """
+        del info
+        try:
+            achieved, desired = np.broadcast_arrays(
+                np.asarray(achieved_goal, np.float32), np.asarray(desired_goal, np.float32)
+            )
+        except (TypeError, ValueError) as error:
+            raise ConfigError(f"achieved_goal and desired_goal: {error}") from error
+        width = len(self.spec.goals[0].labels)
+        if achieved.shape[-1:] != (width,):
+            raise ConfigError(
+                f"goals have shape {achieved.shape}, expected (..., {width}) "
+                f"[{self.spec.goals[0].unit}]"
+            )
+        rewards = self.task.goal_reward(achieved.reshape(-1, width), desired.reshape(-1, width))
+        return float(rewards[0]) if achieved.ndim == 1 else rewards.reshape(achieved.shape[:-1])
+
+
+def check_whole(name: str, value: Any, low: int, high: int, unit: str) -> None:
+    """Raises `ConfigError` unless a value is a whole number within its bounds."""
+    whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    if not whole or not low <= value <= high:
+        raise ConfigError(f"{name} = {value!r} is not a whole number in [{low}, {high}] {unit}")
+
+
+def check_seed(seed: int) -> None:
+    """Raises `ConfigError` for a seed outside the core's range."""
+    if not 0 <= seed < 2**64:
+        raise ConfigError(f"seed = {seed} is not in [0, 2^64)")
+
+
+def _value(part: CasePart, value: Any) -> float | list[float] | None:
+    """A part of a case as the core takes it; None is none.
+
+    Raises:
+        ScenarioError: The value is not made of so many numbers.
+    """
+    if value is None:
+        return None
+    name, unit = part.name, part.unit
+    if part.lengths == (0,):
+        try:
+            return float(value)
+        except (TypeError, ValueError) as error:
+            raise ScenarioError(f"{name} = {value!r} is not a number [{unit}]") from error
+    expected = " or ".join(map(str, part.lengths))
+    try:
+        found = [float(x) for x in value]
+    except (TypeError, ValueError) as error:
+        raise ScenarioError(
+            f"{name} = {value!r} is not made of {expected} numbers [{unit}]"
+        ) from error
+    if len(found) not in part.lengths:
+        raise ScenarioError(
+            f"{name} = {value!r} has {len(found)} numbers, expected {expected} [{unit}]"
+        )
+    return found
+
+
+def document(cls: type, entry: TaskEntry, general: type) -> None:
+    """Adds the options of a task to the signature and the docstring of its environment class."""
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    shared = inspect.signature(general).parameters.values()
+    before = [p for p in shared if p.kind is not inspect.Parameter.VAR_KEYWORD and p.name != "task"]
+    options = [inspect.Parameter(o.name, keyword, default=o.default) for o in entry.options]
+    cls.__signature__ = inspect.Signature([*before, *options])  # type: ignore[attr-defined]
+    lines = "".join(f"\n    - `{o.name}` (`{o.default!r}`): {o.summary}" for o in entry.options)
+    cls.__doc__ = f"{cls.__doc__}\n    ## Options\n{lines}\n"

@@ -1,0 +1,49 @@
+//! Errors for unknown names, with the nearest known one.
+
+use crate::error::EnvError;
+
+/// Most edits between a name and the one that was probably meant.
+const MOST_EDITS: usize = 2;
+
+/// The error for an unknown name; `kind` says what it should name.
+pub(crate) fn unknown(
+    kind: &'static str,
+    name: &str,
+    known: impl IntoIterator<Item = &'static str>,
+) -> EnvError {
+    let known: Vec<&str> = known.into_iter().collect();
+    let nearest = known
+        .iter()
+        .map(|candidate| {
+            (
+                edits(&name.to_lowercase(), &candidate.to_lowercase()),
+                *candidate,
+            )
+        })
+        .filter(|&(edits, _)| edits <= MOST_EDITS)
+        .min_by_key(|&(edits, _)| edits);
+    EnvError::UnknownName {
+        kind,
+        name: name.to_owned(),
+        hint: nearest.map_or_else(String::new, |(_, near)| {
+            format!(" (did you mean {near:?}?)")
+        }),
+        known: known.join(", "),
+    }
+}
+
+/// Insertions, deletions and substitutions that turn `a` into `b` (Levenshtein's distance).
+fn edits(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, &y) in b.iter().enumerate() {
+            let substituted = diagonal + usize::from(x != y);
+            diagonal = row[j + 1];
+            row[j + 1] = substituted.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}

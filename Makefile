@@ -122,7 +122,7 @@ $(STAMPS)/extension: $(STAMPS)/dependencies $(EXTENSION_SOURCES)
 		{ echo "error: cargo not found: install Rust $(RUST_VERSION) or newer (rustup is the usual way)" >&2; exit 1; }
 	@printf '%s\n' $(RUST_VERSION) "$$(cargo --version | cut -d ' ' -f 2)" | sort -V -C || \
 		{ echo "error: Rust $(RUST_VERSION) or newer is needed, and this is $$(cargo --version): rustup update" >&2; exit 1; }
-	env -u CONDA_PREFIX VIRTUAL_ENV='$(CURDIR)/$(VENV)' $(BIN)/maturin develop --release
+	env -u CONDA_PREFIX VIRTUAL_ENV='$(CURDIR)/$(VENV)' $(BIN)/maturin develop --release --features toy
 	@touch $@
 
 # The package as users install it, a wheel, beside the Gymnasium that RLlib pins.

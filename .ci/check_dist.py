@@ -15,12 +15,16 @@ SDIST_NEEDS = {
     "README.md",
     "pyproject.toml",
 }
+TOY = b"BabbleToy-" + b"v0"
+"""The id of the task that only `make setup` builds."""
 
 
 def check_wheel(path: Path) -> None:
     """One abi3 wheel, with nothing in it but gym_babble/ and its metadata."""
     with zipfile.ZipFile(path) as wheel:
         names = wheel.namelist()
+        if any(TOY in wheel.read(name) for name in names):
+            sys.exit(f"error: {path} holds the toy task of development builds")
     strays = [name for name in names if not name.startswith(("gym_babble/", "gym_babble-"))]
     kinds = ("*.py", "*.pyi", "*.css", "*.json", "py.typed")
     sources = {str(source) for kind in kinds for source in Path("gym_babble").rglob(kind)}

@@ -23,6 +23,7 @@ TESTS = (
     "test_config.py",
     "test_env.py",
     "test_env_reach.py",
+    "test_toy.py",
     "test_smoke.py",
 )
 HELPERS = ("conftest.py", "comparing.py")

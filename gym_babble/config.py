@@ -30,14 +30,14 @@ __all__ = [
     "Contact",
     "Cylinder",
     "EyeConfig",
-    "GraspNumbers",
+    "GraspConfig",
     "Grip",
     "Hand",
     "Joint",
     "Muscles",
     "Object",
-    "ReachNumbers",
-    "RegionNumbers",
+    "ReachConfig",
+    "RegionConfig",
     "Target",
     "config_json",
 ]
@@ -221,7 +221,7 @@ class Body:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ReachNumbers:
+class ReachConfig:
     """The reaching task."""
 
     distance_m: tuple[float, float] = (0.08, 0.25)
@@ -246,7 +246,7 @@ class ReachNumbers:
 
 
 @dataclass(frozen=True, kw_only=True)
-class RegionNumbers:
+class RegionConfig:
     """Where objects lie and arms start."""
 
     radius_m: tuple[float, float]
@@ -260,7 +260,7 @@ class RegionNumbers:
 
 
 @dataclass(frozen=True, kw_only=True)
-class GraspNumbers:
+class GraspConfig:
     """The grasping task."""
 
     diameters_m: tuple[float, ...] = (0.024, 0.06)
@@ -268,8 +268,8 @@ class GraspNumbers:
     any_diameter_between: bool = False
     """Whether a diameter is drawn from all between the smallest and the largest, and not from the
     list [C]."""
-    palm_side: RegionNumbers = field(
-        default_factory=lambda: RegionNumbers(
+    palm_side: RegionConfig = field(
+        default_factory=lambda: RegionConfig(
             radius_m=(0.15, 0.29),
             polar_deg=(40.0, 160.0),
             shoulder_deg=(-75.0, -15.0),
@@ -278,8 +278,8 @@ class GraspNumbers:
     )
     """Objects on the palm's side of the arm [C]; polar 90…160°, shoulder −10…10°, elbow 15…90° in
     profile "icub"."""
-    full: RegionNumbers = field(
-        default_factory=lambda: RegionNumbers(
+    full: RegionConfig = field(
+        default_factory=lambda: RegionConfig(
             radius_m=(0.13, 0.29),
             polar_deg=(-20.0, 160.0),
             shoulder_deg=(-360.0, 360.0),
@@ -318,8 +318,8 @@ class Config:
     profile: str = "paper"
     """The profile that this config started from."""
     body: Body = field(default_factory=Body)
-    reach: ReachNumbers = field(default_factory=ReachNumbers)
-    grasp: GraspNumbers = field(default_factory=GraspNumbers)
+    reach: ReachConfig = field(default_factory=ReachConfig)
+    grasp: GraspConfig = field(default_factory=GraspConfig)
 
     @classmethod
     def profile_named(cls, name: str) -> Config:

@@ -11,6 +11,7 @@ from gym_babble.envs import (
     BabbleGraspVectorEnv,
     BabbleReachEnv,
     BabbleReachVectorEnv,
+    registry,
 )
 
 IDS = ("BabbleReach-v0", "BabbleReachSparse-v0", "BabbleReachGoal-v0", "BabbleReachPattern-v0")
@@ -21,6 +22,8 @@ OBSERVATIONS = ("senses", "flat", "goal", "retina")
 REGIONS = ("palm_side", "full")
 
 TASKS = {"reach": BabbleReachEnv, "grasp": BabbleGraspEnv}
+ENVIRONMENTS = [row for row in registry.ENVIRONMENTS if row.task in TASKS]
+"""The ids of these tasks, without that of the toy task."""
 BATCHES = {"reach": BabbleReachVectorEnv, "grasp": BabbleGraspVectorEnv}
 CONTROLS_OF = {"reach": CONTROLS, "grasp": CONTROLS[:3]}
 EACH_CONTROL = [(task, control) for task, controls in CONTROLS_OF.items() for control in controls]

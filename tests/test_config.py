@@ -11,9 +11,9 @@ from gym_babble import Config, _core, scenarios
 from gym_babble.config import (
     Arm,
     Cylinder,
-    GraspNumbers,
+    GraspConfig,
     Object,
-    RegionNumbers,
+    RegionConfig,
     config_json,
 )
 from gym_babble.envs import BabbleGraspEnv, BabbleReachEnv
@@ -78,7 +78,7 @@ def test_the_icub_differs_where_the_docs_say():
         for name, joint in icub.body.joints.items()
         if name not in ("shoulder", "elbow")
     )
-    assert icub.grasp.palm_side == RegionNumbers(
+    assert icub.grasp.palm_side == RegionConfig(
         radius_m=(0.15, 0.29),
         polar_deg=(90, 160),
         shoulder_deg=(-10, 10),
@@ -164,7 +164,7 @@ def test_file_dict_and_dataclass_are_one_config_of_grasping(tmp_path):
     made = replace(
         paper,
         body=replace(paper.body, grip=grip, object=Object(friction=0.4)),
-        grasp=GraspNumbers(
+        grasp=GraspConfig(
             diameters_m=(0.03, 0.04, 0.05),
             hold_steps=8,
             palm_side=replace(paper.grasp.palm_side, radius_m=(0.2, 0.25)),

@@ -12,12 +12,11 @@ import sys
 import gymnasium
 import numpy as np
 import pytest
-from comparing import ALL_IDS, BATCHES, CONTROLS_OF, REGIONS, TASKS
+from comparing import ALL_IDS, BATCHES, CONTROLS_OF, ENVIRONMENTS, REGIONS, TASKS
 
 from gym_babble import _core
 from gym_babble.config import Config
 from gym_babble.envs import BabbleGraspEnv, registry
-from gym_babble.envs.registry import ENVIRONMENTS
 
 DOCSTRINGS = {task: inspect.cleandoc(kind.__doc__) for task, kind in TASKS.items()}
 each_task = pytest.mark.parametrize("task", TASKS)

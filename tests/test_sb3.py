@@ -7,7 +7,7 @@ import gymnasium as gym
 import numpy as np
 import pytest
 import torch
-from comparing import ALL_CHOICES, GRASP_IDS, TASKS
+from comparing import ALL_CHOICES, ENVIRONMENTS, GRASP_IDS, TASKS
 from grasping import to_object
 from gymnasium.error import ResetNeeded
 from stable_baselines3 import PPO, SAC, HerReplayBuffer
@@ -22,7 +22,6 @@ from stable_baselines3.common.vec_env import (
 )
 
 from gym_babble import HebbBabbling, scenarios
-from gym_babble.envs.registry import ENVIRONMENTS
 from gym_babble.errors import ActionError, ConfigError
 from gym_babble.sb3 import BabbleVecEnv
 

@@ -153,7 +153,7 @@ fn finite<T: Task>(env: &Batch<T>) {
     for record in env.records() {
         assert!(record.senses.iter().all(|x| x.is_finite()), "{record:?}");
         assert!(record.step.reward.is_finite(), "{record:?}");
-        let goals = [record.standing.achieved, record.standing.desired];
+        let goals = [record.info.achieved, record.info.desired];
         assert!(
             goals.as_flattened().iter().all(|x| x.is_finite()),
             "{record:?}"

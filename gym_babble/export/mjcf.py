@@ -15,7 +15,7 @@ from gym_babble.export.xml import COLOURS, add_comment, attribute, axis, colour,
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from gym_babble.config import ConfigLike, GraspNumbers, ReachNumbers
+    from gym_babble.config import ConfigLike, GraspConfig, ReachConfig
 
 __all__ = ["export_mjcf"]
 
@@ -78,7 +78,7 @@ def export_mjcf(
     return document(root)
 
 
-def _timestep(given: object, numbers: ReachNumbers | GraspNumbers) -> float:
+def _timestep(given: object, numbers: ReachConfig | GraspConfig) -> float:
     longest = numbers.control_period_s
     if given is None:
         return longest / numbers.physics_steps

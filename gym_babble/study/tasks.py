@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from gym_babble.envs import registry
+from gym_babble.errors import ConfigError
 
 __all__ = ["GRASP", "REACH", "TASKS", "Task", "task_of"]
 
@@ -69,4 +70,7 @@ def task_of(env_id: str) -> Task:
     Raises:
         ConfigError: An unknown environment.
     """
-    return TASKS[registry.environment(env_id).task]
+    task = registry.environment(env_id).task
+    if task not in TASKS:
+        raise ConfigError(f"{env_id!r}: there are no tests of task {task!r}")
+    return TASKS[task]

@@ -1,9 +1,9 @@
 //! The agents that need no learning.
 
 use babble_agent::reference::{case_from_senses, oracle, plan, scripted};
-use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest};
 use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
 use babble_env::tasks::reach::protocol;
+use babble_env::tasks::reach::{CaseRequest, ObstacleRequest};
 use babble_env::{
     Autoreset, Batch, Config, Control, Executor, Outcome, Purpose, ReachCase, ReachOptions,
     ReachTask,

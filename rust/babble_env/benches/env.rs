@@ -4,8 +4,8 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 use babble_env::batch::Batch;
-use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest};
 use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
+use babble_env::tasks::reach::{CaseRequest, ObstacleRequest};
 use babble_env::{Autoreset, Config, Control, Purpose, ReachCase, ReachOptions, ReachTask, Stream};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 

@@ -3,12 +3,12 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::choice::named_enum;
 use crate::error::EnvError;
 use crate::executor::Executor;
+use crate::named_enum::named_enum;
 use crate::snapshot;
 use crate::stream::{Purpose, Stream};
-use crate::task::{Episode, Phase, Request, Standing, State, Step, Task};
+use crate::task::{Episode, EpisodeInfo, Phase, Request, State, Step, Task};
 
 named_enum!(
     /// When an ended episode begins anew.
@@ -27,7 +27,7 @@ pub struct Record {
     /// Flat observation.
     pub senses: Vec<f32>,
     /// What it shows beside.
-    pub standing: Standing,
+    pub info: EpisodeInfo,
     /// Reward and end.
     pub step: Step,
 }
@@ -38,7 +38,7 @@ impl Record {
         env.observe(task, &mut senses);
         Self {
             senses,
-            standing: env.standing(task),
+            info: env.info(task),
             step: Step::default(),
         }
     }
@@ -46,22 +46,22 @@ impl Record {
     /// Shows `env` after `step`, in the same memory.
     fn update<T: Task>(&mut self, task: &T, env: &T::Episode, step: Step) {
         env.observe(task, &mut self.senses);
-        self.standing = env.standing(task);
+        self.info = env.info(task);
         self.step = step;
     }
 }
 
 /// One environment and what it last showed.
-struct Slot<T: Task> {
+struct BatchMember<T: Task> {
     env: T::Episode,
     record: Record,
     /// The episode that a same-step reset replaced.
-    last: Option<Last<State<T>>>,
+    final_episode: Option<FinalEpisode<State<T>>>,
 }
 
 /// An episode at its end.
 #[derive(Debug, Clone)]
-pub struct Last<S> {
+pub struct FinalEpisode<S> {
     /// What it showed last.
     pub record: Record,
     /// Its state.
@@ -71,7 +71,7 @@ pub struct Last<S> {
 /// n environments.
 pub struct Batch<T: Task> {
     task: Arc<T>,
-    slots: Vec<Slot<T>>,
+    members: Vec<BatchMember<T>>,
     autoreset: Autoreset,
     pool: Executor,
 }
@@ -118,15 +118,15 @@ impl<T: Task> Batch<T> {
                 bound: "in [1, 1000000]".to_owned(),
             });
         }
-        let mut slots = Vec::with_capacity(n);
+        let mut members = Vec::with_capacity(n);
         pool.in_turn(0..n, |_, i| {
             let stream = Stream::new(Purpose::Environment, 0, i as u64);
-            slots.push(Slot::new(&*task, T::Episode::new(&task, stream)));
+            members.push(BatchMember::new(&*task, T::Episode::new(&task, stream)));
             Ok(())
         })?;
         Ok(Self {
             task,
-            slots,
+            members,
             autoreset,
             pool,
         })
@@ -141,13 +141,13 @@ impl<T: Task> Batch<T> {
     /// How many environments there are.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.slots.len()
+        self.members.len()
     }
 
     /// Never true.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.slots.is_empty()
+        self.members.is_empty()
     }
 
     /// Threads that step them.
@@ -159,14 +159,16 @@ impl<T: Task> Batch<T> {
     /// What each environment showed last.
     #[must_use]
     pub fn records(&self) -> impl ExactSizeIterator<Item = &Record> {
-        self.slots.iter().map(|slot| &slot.record)
+        self.members.iter().map(|member| &member.record)
     }
 
     /// The episode that ended within the last step, of each environment that a same-step reset began
     /// anew.
     #[must_use]
-    pub fn last(&self) -> impl ExactSizeIterator<Item = Option<&Last<State<T>>>> {
-        self.slots.iter().map(|slot| slot.last.as_ref())
+    pub fn final_episodes(&self) -> impl ExactSizeIterator<Item = Option<&FinalEpisode<State<T>>>> {
+        self.members
+            .iter()
+            .map(|member| member.final_episode.as_ref())
     }
 
     /// The state of environment `i`.
@@ -174,10 +176,10 @@ impl<T: Task> Batch<T> {
     /// # Errors
     /// [`EnvError::OutOfBounds`] if there is no such environment.
     pub fn state(&self, i: usize) -> Result<&State<T>, EnvError> {
-        self.slots
+        self.members
             .get(i)
-            .map(|slot| slot.env.state())
-            .ok_or_else(|| no_such_env(i, self.slots.len()))
+            .map(|member| member.env.state())
+            .ok_or_else(|| no_such_env(i, self.members.len()))
     }
 
     /// Starts the stream of environment `i` anew from `seed`.
@@ -185,7 +187,7 @@ impl<T: Task> Batch<T> {
     /// # Errors
     /// [`EnvError::OutOfBounds`] if there is no such environment.
     pub fn seed(&mut self, i: usize, seed: u64) -> Result<(), EnvError> {
-        self.slot(i)?
+        self.member(i)?
             .env
             .seed(Stream::new(Purpose::Environment, seed, 0));
         Ok(())
@@ -196,7 +198,7 @@ impl<T: Task> Batch<T> {
     /// # Errors
     /// [`EnvError::OutOfBounds`] if there is no such environment.
     pub fn request(&mut self, i: usize, request: Request<T>) -> Result<(), EnvError> {
-        self.slot(i)?.env.request(request);
+        self.member(i)?.env.request(request);
         Ok(())
     }
 
@@ -208,28 +210,28 @@ impl<T: Task> Batch<T> {
     pub fn reset(&mut self, mask: &[bool]) -> Result<(), EnvError> {
         let task = &*self.task;
         let mut chosen: Vec<_> = self
-            .slots
+            .members
             .iter_mut()
             .zip(mask)
-            .filter_map(|(slot, &chosen)| chosen.then_some((slot, None)))
+            .filter_map(|(member, &chosen)| chosen.then_some((member, None)))
             .collect();
         // All are drawn, also after an error, as each forgets what it was asked.
-        let drawn = self.pool.for_each(&mut chosen, 1, |_, (slot, drawn)| {
-            *drawn = Some(slot.env.draw(task)?);
+        let drawn = self.pool.for_each(&mut chosen, 1, |_, (member, drawn)| {
+            *drawn = Some(member.env.draw(task)?);
             Ok(())
         });
         let begun = drawn.and_then(|()| {
-            self.pool.for_each(&mut chosen, 1, |_, (slot, drawn)| {
+            self.pool.for_each(&mut chosen, 1, |_, (member, drawn)| {
                 if let Some(drawn) = drawn.take() {
-                    slot.last = None;
-                    slot.begin(task, drawn);
+                    member.final_episode = None;
+                    member.begin(task, drawn);
                 }
                 Ok(())
             })
         });
         if begun == Err(EnvError::Interrupted) {
-            for (slot, _) in chosen {
-                slot.env.abandon();
+            for (member, _) in chosen {
+                member.env.abandon();
             }
         }
         begun
@@ -247,12 +249,12 @@ impl<T: Task> Batch<T> {
         let (task, autoreset) = (&*self.task, self.autoreset);
         let width = task.action_len();
         let least = task.min_per_thread();
-        let stepped = self.pool.for_each(&mut self.slots, least, |i, slot| {
-            slot.step(task, &actions[i * width..][..width], autoreset)
+        let stepped = self.pool.for_each(&mut self.members, least, |i, member| {
+            member.step(task, &actions[i * width..][..width], autoreset)
         });
         if stepped.is_err() {
-            for slot in &mut self.slots {
-                slot.env.abandon();
+            for member in &mut self.members {
+                member.env.abandon();
             }
         }
         stepped
@@ -260,7 +262,7 @@ impl<T: Task> Batch<T> {
 
     fn check(&self, actions: &[f32]) -> Result<(), EnvError> {
         let width = self.task.action_len();
-        let expected = width * self.slots.len();
+        let expected = width * self.members.len();
         if actions.len() != expected {
             return Err(EnvError::ActionShape {
                 got: actions.len(),
@@ -274,12 +276,12 @@ impl<T: Task> Batch<T> {
                 value: actions[at],
             });
         }
-        let ready = |slot: &Slot<T>| match slot.env.phase() {
+        let ready = |member: &BatchMember<T>| match member.env.phase() {
             Phase::Running => true,
             Phase::Ended => self.autoreset == Autoreset::NextStep,
             Phase::Fresh => false,
         };
-        match self.slots.iter().position(|slot| !ready(slot)) {
+        match self.members.iter().position(|member| !ready(member)) {
             Some(env) => Err(EnvError::NeedsReset { env }),
             None => Ok(()),
         }
@@ -300,27 +302,27 @@ impl<T: Task> Batch<T> {
     pub fn load(&mut self, i: usize, bytes: &[u8]) -> Result<(), EnvError> {
         let task = &*self.task;
         let state = snapshot::load(task, bytes)?;
-        let slot = Slot::new(task, T::Episode::from_state(task, state));
-        *self.slot(i)? = slot;
+        let member = BatchMember::new(task, T::Episode::from_state(task, state));
+        *self.member(i)? = member;
         Ok(())
     }
 
-    fn slot(&mut self, i: usize) -> Result<&mut Slot<T>, EnvError> {
-        let n = self.slots.len();
-        self.slots.get_mut(i).ok_or_else(|| no_such_env(i, n))
+    fn member(&mut self, i: usize) -> Result<&mut BatchMember<T>, EnvError> {
+        let n = self.members.len();
+        self.members.get_mut(i).ok_or_else(|| no_such_env(i, n))
     }
 }
 
-impl<T: Task> Slot<T> {
+impl<T: Task> BatchMember<T> {
     fn new(task: &T, env: T::Episode) -> Self {
         Self {
             record: Record::of(task, &env),
             env,
-            last: None,
+            final_episode: None,
         }
     }
 
-    fn begin(&mut self, task: &T, drawn: <T::Episode as Episode>::Drawn) {
+    fn begin(&mut self, task: &T, drawn: <T::Episode as Episode>::NextEpisode) {
         self.env.begin(task, drawn);
         self.record.update(task, &self.env, Step::default());
     }
@@ -332,14 +334,14 @@ impl<T: Task> Slot<T> {
     }
 
     fn step(&mut self, task: &T, action: &[f32], autoreset: Autoreset) -> Result<(), EnvError> {
-        self.last = None;
+        self.final_episode = None;
         if self.env.phase() == Phase::Ended {
             return self.reset(task);
         }
         let step = self.env.step(task, action)?;
         self.record.update(task, &self.env, step);
         if autoreset == Autoreset::SameStep && (step.terminated || step.truncated) {
-            self.last = Some(Last {
+            self.final_episode = Some(FinalEpisode {
                 record: self.record.clone(),
                 state: self.env.state().clone(),
             });

@@ -11,36 +11,11 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::error::EnvError;
-use crate::tasks::grasp::GraspNumbers;
+use crate::tasks::grasp::config::GraspConfig;
+use crate::tasks::reach::config::ReachConfig;
 
 /// Names of the profiles.
 pub const PROFILES: [&str; 2] = ["paper", "icub"];
-
-/// The reaching task's numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ReachNumbers {
-    /// Distance from start to target: lowest and highest \[m\]; 0.08 and 0.25 \[F\] (body `icub`:
-    /// 0.10 and 0.20 \[C\]).
-    pub distance_m: [f64; 2],
-    /// Success when the fingertip is at most this far from the target \[m\]; 0.02 \[C\].
-    pub success_radius_m: f64,
-    /// Lowest and highest b1 and b2 of a movement; 0.01 and 0.99 \[C\].
-    pub b_range: [f64; 2],
-    /// Movement time T of the pattern generators \[s\]; 8 \[C\]. Shorter movements lose their
-    /// curvature to the muscles' lag.
-    pub movement_s: f64,
-    /// Time to settle after T, in muscle time constants `K_D/K_P`; 4 \[C\]. 120 s at most.
-    pub settle_time_constants: f64,
-    /// Change of the equilibrium point by an action of 1 in `delta_posture` control \[deg\]; 5 \[C\].
-    pub delta_posture_deg: f64,
-    /// Joint speed below which the arm counts as settled, if that is asked for \[rad/s\]; 0.05 \[C\].
-    pub settled_speed_rad_s: f64,
-    /// Time between two actions \[s\]; 0.05 \[C\].
-    pub control_period_s: f64,
-    /// Physics steps in a control period; 10 \[C\], that is 5 ms each.
-    pub physics_steps: u32,
-}
 
 /// Everything that a modeller may change.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -51,9 +26,9 @@ pub struct Config {
     /// Arm, hand, muscles, eye, obstacle and target.
     pub body: Body,
     /// The reaching task's numbers.
-    pub reach: ReachNumbers,
+    pub reach: ReachConfig,
     /// The grasping task's numbers.
-    pub grasp: GraspNumbers,
+    pub grasp: GraspConfig,
 }
 
 impl Config {
@@ -62,27 +37,9 @@ impl Config {
     /// # Errors
     /// [`EnvError::Option`] for an unknown name.
     pub fn profile(name: &str) -> Result<Self, EnvError> {
-        let reach = ReachNumbers {
-            distance_m: [0.08, 0.25],
-            success_radius_m: 0.02,
-            b_range: [0.01, 0.99],
-            movement_s: 8.0,
-            settle_time_constants: 4.0,
-            delta_posture_deg: 5.0,
-            settled_speed_rad_s: 0.05,
-            control_period_s: 0.05,
-            physics_steps: 10,
-        };
         let (body, reach, grasp) = match name {
-            "paper" => (Body::paper(), reach, GraspNumbers::paper()),
-            "icub" => (
-                Body::icub(),
-                ReachNumbers {
-                    distance_m: [0.1, 0.2],
-                    ..reach
-                },
-                GraspNumbers::icub(),
-            ),
+            "paper" => (Body::paper(), ReachConfig::paper(), GraspConfig::paper()),
+            "icub" => (Body::icub(), ReachConfig::icub(), GraspConfig::icub()),
             _ => {
                 return Err(EnvError::Option {
                     option: "config",
@@ -164,53 +121,7 @@ impl Config {
     pub fn validate(&self) -> Result<(), EnvError> {
         self.body.validate()?;
         self.grasp.validate()?;
-        let reach = &self.reach;
-        let [near, far] = reach.distance_m;
-        within("reach.distance_m[0]", near, 1e-3, 1.0)?;
-        within("reach.distance_m[1]", far, near, 2.0)?;
-        within("reach.success_radius_m", reach.success_radius_m, 1e-4, near)?;
-        within("reach.b_range[0]", reach.b_range[0], 0.01, 0.99)?;
-        within("reach.b_range[1]", reach.b_range[1], reach.b_range[0], 0.99)?;
-        // Before the movement time, which is bounded by it.
-        within("reach.control_period_s", reach.control_period_s, 1e-3, 1.0)?;
-        within(
-            "reach.movement_s",
-            reach.movement_s,
-            reach.control_period_s,
-            120.0,
-        )?;
-        within(
-            "reach.settle_time_constants",
-            reach.settle_time_constants,
-            0.0,
-            20.0,
-        )?;
-        let muscles = &self.body.muscles;
-        let settle_s = reach.settle_time_constants * muscles.kd / muscles.kp;
-        within(
-            "reach.settle_time_constants K_D/K_P in seconds",
-            settle_s,
-            0.0,
-            120.0,
-        )?;
-        within(
-            "reach.delta_posture_deg",
-            reach.delta_posture_deg,
-            0.01,
-            180.0,
-        )?;
-        within(
-            "reach.settled_speed_rad_s",
-            reach.settled_speed_rad_s,
-            1e-6,
-            100.0,
-        )?;
-        within(
-            "reach.physics_steps",
-            f64::from(reach.physics_steps),
-            1.0,
-            1000.0,
-        )
+        self.reach.validate(&self.body.muscles)
     }
 
     /// The whole document as JSON.
@@ -219,20 +130,6 @@ impl Config {
     /// Never for a validated config; the serializer's signature has it.
     pub fn to_json(&self) -> Result<String, EnvError> {
         serde_json::to_string(self).map_err(|error| document(&error))
-    }
-}
-
-impl ReachNumbers {
-    /// Physics step \[s\].
-    #[must_use]
-    pub fn physics_step_s(&self) -> f64 {
-        self.control_period_s / f64::from(self.physics_steps)
-    }
-
-    /// Control periods of the pattern generators' movement time.
-    #[must_use]
-    pub fn movement_steps(&self) -> usize {
-        (self.movement_s / self.control_period_s).round().max(1.0) as usize
     }
 }
 
@@ -280,15 +177,4 @@ fn document(error: &impl ToString) -> EnvError {
         field: "document".to_owned(),
         problem: error.to_string(),
     }
-}
-
-/// `Ok` when `value` is finite and inside `[low, high]`.
-pub(crate) fn within(field: &str, value: f64, low: f64, high: f64) -> Result<(), EnvError> {
-    if value.is_finite() && (low..=high).contains(&value) {
-        return Ok(());
-    }
-    Err(EnvError::Config {
-        field: field.to_owned(),
-        problem: format!("{value} is out of bounds: finite and in [{low}, {high}]"),
-    })
 }

@@ -205,7 +205,7 @@ impl<T: Task> AnyBatch for Batch<T> {
     }
 
     fn final_record(&self, i: usize) -> Option<&Record> {
-        Some(&self.last().nth(i)??.record)
+        Some(&self.final_episodes().nth(i)??.record)
     }
 
     fn seed(&mut self, i: usize, seed: u64) -> Result<(), EnvError> {
@@ -265,7 +265,7 @@ impl<T: Task> AnyBatch for Batch<T> {
         view: View,
         size: [u32; 2],
     ) -> Result<Option<RgbImage>, EnvError> {
-        let ended = self.last().nth(i).flatten();
+        let ended = self.final_episodes().nth(i).flatten();
         let draw = |state| self.task().picture(state, view, size, None);
         ended.map(|ended| draw(&ended.state)).transpose()
     }

@@ -1,17 +1,16 @@
-//! Threads that belong to one owner, survive a fork and can be interrupted.
+//! Where work is done: one after the other, or in threads that belong to one owner, survive a fork and
+//! can be interrupted. Threads and clocks are behind the feature `threads`; without it the same calls
+//! work in the calling thread, with the same results.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::time::{Duration, Instant};
 
-use rayon::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuilder};
-
+#[cfg(feature = "threads")]
+use self::threads::{PATIENCE, Threads};
 use crate::error::EnvError;
 
-/// Time between two questions whether to go on: short for a person, long for the interpreter, whose
-/// lock an answer may have to wait for.
-const PATIENCE: Duration = Duration::from_millis(50);
+#[cfg(feature = "threads")]
+mod threads;
+
 /// Items between two looks at the clock.
 const STRIDE: usize = 16;
 
@@ -20,6 +19,11 @@ const STRIDE: usize = 16;
 pub struct Stop(AtomicBool);
 
 impl Stop {
+    #[cfg(feature = "threads")]
+    fn interrupt(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
     /// Whether to go on.
     ///
     /// # Errors
@@ -32,18 +36,19 @@ impl Stop {
     }
 }
 
-/// A pool of threads, started at first use.
+/// Does work in a number of threads, which are started at first use.
 ///
-/// A forked child does not have its parent's threads; the pool notices and starts new ones.
+/// A forked child does not have its parent's threads; the executor notices and starts new ones.
 #[derive(Debug)]
 pub struct Executor {
     threads: usize,
-    started: Option<(u32, ThreadPool)>,
+    #[cfg(feature = "threads")]
+    pool: Threads,
     interrupted: fn() -> bool,
 }
 
 impl Executor {
-    /// A pool of `threads` threads that nothing interrupts.
+    /// An executor with `threads` threads that nothing interrupts.
     ///
     /// # Errors
     /// [`EnvError::OutOfBounds`] for no threads or more than 1024.
@@ -57,7 +62,8 @@ impl Executor {
         }
         Ok(Self {
             threads,
-            started: None,
+            #[cfg(feature = "threads")]
+            pool: Threads::default(),
             interrupted: || false,
         })
     }
@@ -76,48 +82,6 @@ impl Executor {
         self.threads
     }
 
-    /// Runs `work` to its end with rayon's parallel iterators bound to this pool.
-    ///
-    /// # Errors
-    /// [`EnvError::Threads`] when the system gives no threads.
-    pub fn run<T: Send>(&mut self, work: impl FnOnce() -> T + Send) -> Result<T, EnvError> {
-        Ok(self.start()?.install(work))
-    }
-
-    /// Runs `work` likewise, until it is interrupted: it should end soon after [`Stop::check`] says
-    /// so.
-    ///
-    /// # Errors
-    /// As [`Self::run`]; [`EnvError::Interrupted`], also if the work was done by then.
-    pub fn run_until<T: Send>(
-        &mut self,
-        work: impl FnOnce(&Stop) -> T + Send,
-    ) -> Result<T, EnvError> {
-        let interrupted = self.interrupted;
-        let pool = self.start()?;
-        let stop = &Stop::default();
-        let (sender, receiver) = channel();
-        let result = pool.in_place_scope(|scope| {
-            scope.spawn(move |_| {
-                // The receiver waits below for as long as this runs.
-                let _ = sender.send(work(stop));
-            });
-            loop {
-                match receiver.recv_timeout(PATIENCE) {
-                    Ok(result) => return Ok(result),
-                    Err(RecvTimeoutError::Timeout) => {
-                        if stop.check().is_ok() && interrupted() {
-                            stop.0.store(true, Ordering::Relaxed);
-                        }
-                    }
-                    // The work panicked, and so will the scope.
-                    Err(RecvTimeoutError::Disconnected) => return Err(EnvError::Interrupted),
-                }
-            }
-        });
-        stop.check().and(result)
-    }
-
     /// The results of `each` for all indices, in their order.
     ///
     /// # Errors
@@ -128,15 +92,18 @@ impl Executor {
         indices: std::ops::Range<usize>,
         each: impl Fn(usize) -> Result<T, E> + Sync,
     ) -> Result<Vec<T>, E> {
-        self.run_until(|stop| {
-            indices
-                .into_par_iter()
-                .map(|i| {
-                    stop.check()?;
-                    each(i)
-                })
-                .collect::<Result<Vec<T>, E>>()
-        })?
+        #[cfg(feature = "threads")]
+        if self.threads > 1 {
+            let each = &each;
+            return self.run_until(move |stop| threads::map(indices, stop, each))?;
+        }
+        let mut results = Vec::with_capacity(indices.len());
+        let mut clock = Clock::default();
+        for i in indices {
+            clock.check(self.interrupted)?;
+            results.push(each(i)?);
+        }
+        Ok(results)
     }
 
     /// Does `each` to all items, with their places; to at least `least` of them in a thread.
@@ -153,21 +120,13 @@ impl Executor {
         if let [item] = items {
             return each(0, item);
         }
-        if self.threads == 1 || items.len() <= least {
-            return self.in_turn(items.iter_mut(), each);
+        #[cfg(feature = "threads")]
+        if self.threads > 1 && items.len() > least {
+            let each = &each;
+            return self.run_until(move |stop| threads::for_each(items, least, stop, each))?;
         }
-        let first = self.run_until(|stop| {
-            items
-                .par_iter_mut()
-                .with_min_len(least)
-                .enumerate()
-                .filter_map(|(i, item)| {
-                    let done = stop.check().and_then(|()| each(i, item));
-                    done.err().map(|error| (i, error))
-                })
-                .min_by_key(|&(i, _)| i)
-        })?;
-        first.map_or(Ok(()), |(_, error)| Err(error))
+        let _ = least;
+        self.in_turn(items.iter_mut(), each)
     }
 
     /// The same, one after the other in the thread that calls: none is started for it.
@@ -180,51 +139,44 @@ impl Executor {
         mut each: impl FnMut(usize, S) -> Result<(), EnvError>,
     ) -> Result<(), EnvError> {
         let mut first = Ok(());
-        let mut asked = Instant::now();
+        let mut clock = Clock::default();
         for (i, item) in items.into_iter().enumerate() {
-            if i % STRIDE == STRIDE - 1 && asked.elapsed() >= PATIENCE {
-                if (self.interrupted)() {
-                    return Err(EnvError::Interrupted);
-                }
-                asked = Instant::now();
+            if i % STRIDE == STRIDE - 1 {
+                clock.check(self.interrupted)?;
             }
             first = first.and(each(i, item));
         }
         first
     }
+}
 
-    fn start(&mut self) -> Result<&ThreadPool, EnvError> {
-        self.forget_lost();
-        let started = match self.started.take() {
-            Some(started) => started,
-            None => (std::process::id(), threads(self.threads)?),
-        };
-        Ok(&self.started.insert(started).1)
-    }
+/// When it was last asked whether to go on; without threads there is no clock, and it is asked always.
+struct Clock {
+    #[cfg(feature = "threads")]
+    asked: std::time::Instant,
+}
 
-    /// Lets go of threads that a fork left in the parent: to wake them, as a drop does, could wait
-    /// forever for a lock that one of them holds.
-    fn forget_lost(&mut self) {
-        let process = std::process::id();
-        if let Some((_, lost)) = self.started.take_if(|(owner, _)| *owner != process) {
-            std::mem::forget(lost);
+impl Default for Clock {
+    fn default() -> Self {
+        Self {
+            #[cfg(feature = "threads")]
+            asked: std::time::Instant::now(),
         }
     }
 }
 
-impl Drop for Executor {
-    fn drop(&mut self) {
-        self.forget_lost();
+impl Clock {
+    fn check(&mut self, interrupted: fn() -> bool) -> Result<(), EnvError> {
+        #[cfg(feature = "threads")]
+        {
+            if self.asked.elapsed() < PATIENCE {
+                return Ok(());
+            }
+            self.asked = std::time::Instant::now();
+        }
+        if interrupted() {
+            return Err(EnvError::Interrupted);
+        }
+        Ok(())
     }
-}
-
-fn threads(n: usize) -> Result<ThreadPool, EnvError> {
-    ThreadPoolBuilder::new()
-        .num_threads(n)
-        .thread_name(|i| format!("babble-{i}"))
-        .build()
-        .map_err(|error| EnvError::Threads {
-            threads: n,
-            problem: error.to_string(),
-        })
 }

@@ -2,13 +2,15 @@
 #![warn(clippy::disallowed_methods, clippy::disallowed_types)]
 
 pub mod batch;
+mod bounds;
 pub mod case;
 mod check;
-mod choice;
 pub mod config;
+mod episode;
 pub mod erased;
 mod error;
 mod executor;
+mod named_enum;
 mod near;
 pub mod option_spec;
 pub mod options;

@@ -1,7 +1,7 @@
 //! The choices that all tasks have.
 
-use crate::choice::named_enum;
 use crate::error::EnvError;
+use crate::named_enum::named_enum;
 use crate::option_spec::{OptionDefault, OptionSpec};
 use crate::picture::View;
 

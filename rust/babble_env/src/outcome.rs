@@ -1,6 +1,6 @@
 //! How episodes end, in all tasks.
 
-use crate::choice::named_enum;
+use crate::named_enum::named_enum;
 
 named_enum!(
     /// How an episode stands or ended. Each task lists those that it knows in its spec.

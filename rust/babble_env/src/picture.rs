@@ -7,8 +7,8 @@ use babble_eye::{
 use image::imageops::{FilterType, resize, thumbnail};
 use image::{DynamicImage, RgbImage};
 
-use crate::choice::named_enum;
 use crate::error::EnvError;
+use crate::named_enum::named_enum;
 
 named_enum!(
     /// Where a picture is taken from.

@@ -16,7 +16,12 @@ use crate::option_spec::{OptionSpec, OptionValues, Options};
 use crate::tasks;
 
 /// All tasks.
-pub const TASKS: &[&TaskEntry] = &[&tasks::reach::ENTRY, &tasks::grasp::ENTRY];
+pub const TASKS: &[&TaskEntry] = &[
+    &tasks::reach::ENTRY,
+    &tasks::grasp::ENTRY,
+    #[cfg(feature = "toy")]
+    &tasks::toy::ENTRY,
+];
 
 /// A task, and what its environments can be made with.
 #[derive(Debug, Clone, Copy, Serialize)]

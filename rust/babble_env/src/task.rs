@@ -134,7 +134,7 @@ pub trait Episode: Send + Sync {
     /// What a user asks of the cases to come.
     type Request: Clone + Default;
     /// A new episode that was drawn and not begun yet.
-    type Drawn: Send;
+    type NextEpisode: Send;
     /// Everything that changes: what a snapshot holds.
     type State: Clone + Send + Sync + Serialize + DeserializeOwned;
 
@@ -167,10 +167,10 @@ pub trait Episode: Send + Sync {
     ///
     /// # Errors
     /// [`EnvError`] when the case asked for cannot be played; the episode stays as it was.
-    fn draw(&mut self, task: &Self::Task) -> Result<Self::Drawn, EnvError>;
+    fn draw(&mut self, task: &Self::Task) -> Result<Self::NextEpisode, EnvError>;
 
     /// Begins an episode that was drawn.
-    fn begin(&mut self, task: &Self::Task, drawn: Self::Drawn);
+    fn begin(&mut self, task: &Self::Task, drawn: Self::NextEpisode);
 
     /// Leaves the episode unfinished: it has to be reset before it can step.
     fn abandon(&mut self);
@@ -186,7 +186,7 @@ pub trait Episode: Send + Sync {
     fn observe(&self, task: &Self::Task, out: &mut [f32]);
 
     /// What it shows beside the senses.
-    fn standing(&self, task: &Self::Task) -> Standing;
+    fn info(&self, task: &Self::Task) -> EpisodeInfo;
 }
 
 /// Whether an episode can be stepped.
@@ -215,7 +215,7 @@ pub struct Step {
 
 /// What an episode shows beside its senses.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Standing {
+pub struct EpisodeInfo {
     /// Where the task has brought what it moves \[m\].
     pub achieved: [f32; 2],
     /// Where it should be \[m\].

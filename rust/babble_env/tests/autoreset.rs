@@ -51,7 +51,7 @@ fn next_step_resets_one_step_later() {
             for expected in &episode[1..] {
                 env.step(&actions.draw()).unwrap();
                 assert_eq!(record(&env), *expected);
-                assert!(env.last().next().unwrap().is_none());
+                assert!(env.final_episodes().next().unwrap().is_none());
             }
             env.step(&[1.0, -1.0]).unwrap();
         }
@@ -72,12 +72,16 @@ fn same_step_resets_at_once_and_keeps_the_end() {
             for expected in middle {
                 env.step(&actions.draw()).unwrap();
                 assert_eq!(record(&env), *expected);
-                assert!(env.last().next().unwrap().is_none());
+                assert!(env.final_episodes().next().unwrap().is_none());
             }
             env.step(&actions.draw()).unwrap();
-            let last = env.last().next().unwrap().expect("the episode that ended");
+            let last = env
+                .final_episodes()
+                .next()
+                .unwrap()
+                .expect("the episode that ended");
             assert_eq!(last.record, *end);
-            assert_eq!(last.state.outcome, end.standing.outcome);
+            assert_eq!(last.state.outcome, end.info.outcome);
             let shown = record(&env);
             assert_eq!(shown.step, end.step);
             assert_eq!(

@@ -3,7 +3,8 @@
 mod playing;
 
 use babble_env::batch::Record;
-use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest, obstacle_at};
+use babble_env::tasks::reach::case::obstacle_at;
+use babble_env::tasks::reach::{CaseRequest, ObstacleRequest};
 use babble_env::{
     Autoreset, Batch, Config, Control, EnvError, Executor, ReachOptions, ReachTask, Reward, Task,
 };

@@ -2,9 +2,10 @@
 
 mod playing;
 
-use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest, obstacle_at};
+use babble_env::tasks::reach::case::obstacle_at;
 use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
 use babble_env::tasks::reach::protocol;
+use babble_env::tasks::reach::{CaseRequest, ObstacleRequest};
 use babble_env::{Config, Control, Executor, Purpose, ReachCase, ReachOptions, ReachTask, Stream};
 use nalgebra::Vector2;
 use playing::{control, task};

@@ -5,7 +5,7 @@ mod playing;
 use std::sync::Arc;
 
 use babble_env::tasks::grasp::GraspRequest;
-use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest};
+use babble_env::tasks::reach::{CaseRequest, ObstacleRequest};
 use babble_env::{Autoreset, Batch, Config, Control, EnvError, GraspTask, ReachTask, Task};
 use playing::control;
 use playing::grasping::{CONTROLS, with_control};

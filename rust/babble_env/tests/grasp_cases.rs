@@ -50,7 +50,7 @@ fn inside(value: f64, [low, high]: [f64; 2]) -> bool {
     (low - 1e-9..=high + 1e-9).contains(&value)
 }
 
-/// Drawn cases keep to their region and its joint ranges, with the arm clear of the object, which
+/// Sampled cases keep to their region and its joint ranges, with the arm clear of the object, which
 /// some posture brings to the palm; both diameters occur and the region is filled; there is no
 /// obstacle, and a goal in the goal form alone, at least 5 cm away. Catches a region of the other
 /// body, degrees for radians, and a clearance from the object's centre.

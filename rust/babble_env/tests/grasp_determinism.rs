@@ -161,12 +161,16 @@ fn automatic_resets_are_those_by_hand() {
         for expected in middle {
             env.step(&actions.draw()).unwrap();
             assert_eq!(record(&env), *expected);
-            assert!(env.last().next().unwrap().is_none());
+            assert!(env.final_episodes().next().unwrap().is_none());
         }
         env.step(&actions.draw()).unwrap();
-        let last = env.last().next().unwrap().expect("the episode that ended");
+        let last = env
+            .final_episodes()
+            .next()
+            .unwrap()
+            .expect("the episode that ended");
         assert_eq!(last.record, *end);
-        assert_eq!(last.state.outcome, end.standing.outcome);
+        assert_eq!(last.state.outcome, end.info.outcome);
         let shown = Record {
             step: end.step,
             ..next[0].clone()

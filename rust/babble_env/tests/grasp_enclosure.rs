@@ -1,18 +1,18 @@
 //! When a grasp counts, as a law of the counts of enclosing contacts alone.
 
 use babble_env::Config;
-use babble_env::tasks::grasp::{Contacts, Enclosure, GraspNumbers, Grip};
+use babble_env::tasks::grasp::{Contacts, Enclosure, GraspConfig, Grip};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
-fn numbers() -> GraspNumbers {
+fn numbers() -> GraspConfig {
     Config::profile("paper").unwrap().grasp
 }
 
 /// The law over a whole history of (physics steps with contact, in the hand): the step at which the
 /// support goes, and the step of the verdict with whether it is held.
 fn reference(
-    numbers: &GraspNumbers,
+    numbers: &GraspConfig,
     history: &[(u8, bool)],
 ) -> (Option<usize>, Option<(usize, bool)>) {
     let (window, per_step) = (numbers.hold_steps as usize, numbers.physics_steps);
@@ -68,10 +68,7 @@ fn one_side_is_worth_half() {
 }
 
 /// Steps through a history; the same two moments.
-fn played(
-    numbers: &GraspNumbers,
-    history: &[(u8, bool)],
-) -> (Option<usize>, Option<(usize, bool)>) {
+fn played(numbers: &GraspConfig, history: &[(u8, bool)]) -> (Option<usize>, Option<(usize, bool)>) {
     let mut enclosure = Enclosure::default();
     let (mut goes, mut verdict) = (None, None);
     for (i, &(contacts, in_hand)) in history.iter().enumerate() {
@@ -126,7 +123,7 @@ proptest! {
         }),
         enclosed in 1_u32..=64, held in 1_u32..64,
     ) {
-        let numbers = GraspNumbers {
+        let numbers = GraspConfig {
             hold_steps,
             physics_steps: physics_steps.into(),
             // In 64ths, so that a share of a count is exact.
@@ -156,7 +153,7 @@ fn thresholds_by_hand() {
     assert_eq!(with_misses(40, 19, false), (Some(20), Some((40, true))));
     assert_eq!(with_misses(40, 20, false), (Some(20), Some((22, false))));
     // A share of 0.95 must be exceeded too: 190 of 200 do not, though 1 − 0.95 is not exact.
-    let strict = GraspNumbers {
+    let strict = GraspConfig {
         held_share: 0.95,
         ..numbers
     };

@@ -47,7 +47,7 @@ fn grasps(task: &Arc<GraspTask>, seed: u64, diameter: f64, closes: bool) -> bool
             touched = Some(step);
         }
         assert!(!state.palm_reach || state.reach);
-        let facts = shown.standing.facts;
+        let facts = shown.info.facts;
         assert_eq!(
             facts[..5],
             [
@@ -58,7 +58,7 @@ fn grasps(task: &Arc<GraspTask>, seed: u64, diameter: f64, closes: bool) -> bool
                 state.is_success
             ]
         );
-        assert_eq!(shown.standing.outcome, state.outcome);
+        assert_eq!(shown.info.outcome, state.outcome);
     });
     let (shown, state) = (record(&env), state(&env));
     if outcome != Outcome::Success {
@@ -66,7 +66,7 @@ fn grasps(task: &Arc<GraspTask>, seed: u64, diameter: f64, closes: bool) -> bool
     }
     assert_eq!((shown.step.terminated, shown.step.truncated), (true, false));
     for fact in [IS_SUCCESS, REACH, PALM_REACH, HELD] {
-        assert!(shown.standing.facts[fact], "fact {fact}");
+        assert!(shown.info.facts[fact], "fact {fact}");
     }
     assert_eq!(gone, Some(step - 20));
     assert!(touched.unwrap() < step - 20);
@@ -174,7 +174,7 @@ fn an_open_hand_runs_out_of_time() {
         let mut steps = 0;
         let outcome = play(&mut env, false, |env| {
             steps += 1;
-            assert!(!record(env).standing.facts[IS_SUCCESS]);
+            assert!(!record(env).info.facts[IS_SUCCESS]);
         });
         let (shown, state) = (record(&env), state(&env));
         assert_eq!((outcome, steps, state.steps), (Outcome::Timeout, 90, 90));
@@ -227,7 +227,7 @@ fn what_slips_is_lost() {
             let (shown, state) = (record(&env), state(&env));
             assert_eq!(state.enclosure.grip, Grip::Failed);
             assert_eq!(outcome, Outcome::Lost);
-            assert!(shown.step.terminated && !shown.standing.facts[HELD]);
+            assert!(shown.step.terminated && !shown.info.facts[HELD]);
             assert!((4..20).contains(&tried), "{config}: {tried} steps");
             assert!(task.robot.object(&state.world).z < -0.02);
         }

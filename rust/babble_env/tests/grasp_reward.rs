@@ -52,8 +52,8 @@ fn what_is_shown_is_in_the_spec() {
                     assert_eq!(record.senses.len(), senses);
                     assert_eq!(step.terms.iter().sum::<f64>(), step.reward);
                     assert!(step.terms[named..].iter().all(|&term| term == 0.0));
-                    assert!(spec.outcomes.contains(&record.standing.outcome.name()));
-                    assert!(!record.standing.facts[FACTS.len()..].contains(&true));
+                    assert!(spec.outcomes.contains(&record.info.outcome.name()));
+                    assert!(!record.info.facts[FACTS.len()..].contains(&true));
                 }
             }
         }
@@ -192,9 +192,9 @@ fn goal_reward_is_the_steps_reward() {
                 let (shown, state) = (record(&env), state(&env));
                 let object = task.robot.object(&state.world);
                 let there = [object.x as f32, object.y as f32];
-                assert_eq!(shown.standing.achieved, there);
-                assert_eq!(shown.standing.desired, goal.map(|x| x as f32));
-                let again = goal_reward(&task.config, there, shown.standing.desired);
+                assert_eq!(shown.info.achieved, there);
+                assert_eq!(shown.info.desired, goal.map(|x| x as f32));
+                let again = goal_reward(&task.config, there, shown.info.desired);
                 assert_eq!(shown.step.reward, again);
                 assert_eq!(shown.step.terms, [again, 0.0, 0.0, 0.0]);
                 assert_eq!(state.is_success, again == 0.0);
@@ -245,11 +245,7 @@ fn stands_still(env: &mut Batch<GraspTask>, outcome: Outcome, towards: [f64; 4])
             env.step(&action).unwrap();
         }
         let (shown, state) = (record(env), state(env));
-        let again = goal_reward(
-            &task.config,
-            shown.standing.achieved,
-            shown.standing.desired,
-        );
+        let again = goal_reward(&task.config, shown.info.achieved, shown.info.desired);
         assert_eq!(shown.step.reward, again);
         assert_eq!(
             (shown.step.terminated, shown.step.truncated),
@@ -335,7 +331,7 @@ fn what_is_dropped_is_lost() {
         let (shown, state) = (record(&env), state(&env));
         let below = task.robot.object(&state.world).z < -0.1;
         assert_eq!(state.outcome == Outcome::Lost, below);
-        assert_eq!(shown.standing.facts[4], state.enclosure.grip == Grip::Held);
+        assert_eq!(shown.info.facts[4], state.enclosure.grip == Grip::Held);
         lost += u32::from(below);
     }
     assert!(held && lost > 20, "{held} {lost}");

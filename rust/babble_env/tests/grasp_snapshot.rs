@@ -102,7 +102,7 @@ proptest! {
         prop_assert_eq!(other.save(0).unwrap(), bytes);
         let shown = |env: &Batch<GraspTask>| {
             let record = env.records().next().unwrap();
-            (record.senses.clone(), record.standing)
+            (record.senses.clone(), record.info)
         };
         prop_assert_eq!(shown(&other), shown(&env));
         for _ in 0..after {

@@ -7,7 +7,7 @@ use babble_body::Obstacle;
 use babble_env::task::{Phase, State};
 use babble_env::tasks::grasp::{GraspRequest, GraspState, Grip};
 use babble_env::tasks::reach::ReachState;
-use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest};
+use babble_env::tasks::reach::{CaseRequest, ObstacleRequest};
 use babble_env::{
     Autoreset, Batch, Control, EnvError, GraspOptions, GraspTask, Outcome, ReachOptions, Task,
     snapshot,

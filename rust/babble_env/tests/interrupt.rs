@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use babble_env::picture::View;
 use babble_env::spec::{Entry, Spec};
-use babble_env::task::{Episode, Phase, Standing, Step, Task};
+use babble_env::task::{Episode, EpisodeInfo, Phase, Step, Task};
 use babble_env::{Autoreset, Batch, Config, EnvError, Executor, Outcome, Stream};
 use image::RgbImage;
 use serde::Serialize;
@@ -111,7 +111,7 @@ impl Task for Slow {
 impl Episode for Count {
     type Task = Slow;
     type Request = u32;
-    type Drawn = ();
+    type NextEpisode = ();
     type State = Self;
 
     fn new(task: &Slow, _: Stream) -> Self {
@@ -174,8 +174,8 @@ impl Episode for Count {
         out[0] = self.0;
     }
 
-    fn standing(&self, _: &Slow) -> Standing {
-        Standing {
+    fn info(&self, _: &Slow) -> EpisodeInfo {
+        EpisodeInfo {
             achieved: [0.0; 2],
             desired: [0.0; 2],
             outcome: Outcome::Running,

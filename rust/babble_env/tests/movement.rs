@@ -2,8 +2,8 @@
 
 mod playing;
 
-use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest};
 use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
+use babble_env::tasks::reach::{CaseRequest, ObstacleRequest};
 use babble_env::{
     Autoreset, Batch, Config, Control, Outcome, Purpose, ReachCase, ReachOptions, ReachTask, Stream,
 };

@@ -3,7 +3,7 @@
 mod playing;
 
 use babble_env::batch::Record;
-use babble_env::tasks::reach::case::{CaseRequest, ObstacleRequest};
+use babble_env::tasks::reach::{CaseRequest, ObstacleRequest};
 use babble_env::tasks::reach::{IS_SUCCESS, goal_reward};
 use babble_env::{Autoreset, Batch, Control, Outcome, ReachOptions, ReachTask, Reward, Task};
 use playing::{Actions, batch, control, goal};
@@ -112,11 +112,11 @@ fn success_ends_the_episode() {
                 if state.distance <= radius && arrived.is_none() {
                     arrived = Some(step);
                 }
-                assert_eq!(shown.standing.facts[IS_SUCCESS], shown.step.terminated);
+                assert_eq!(shown.info.facts[IS_SUCCESS], shown.step.terminated);
                 if shown.step.terminated {
                     let slow = state.arm.v.iter().all(|v| v.abs() < 0.05);
                     assert!(if settled { slow } else { arrived == Some(step) });
-                    assert_eq!(shown.standing.outcome, Outcome::Success);
+                    assert_eq!(shown.info.outcome, Outcome::Success);
                     let term = usize::from(reward == Reward::Progress);
                     assert_eq!(shown.step.terms[term], 1.0);
                     break;
@@ -157,7 +157,7 @@ fn goal_reward_is_the_steps_reward() {
                     assert_eq!(shown.step.reward, 0.0);
                     continue;
                 }
-                let again = goal_reward(&config, shown.standing.achieved, shown.standing.desired);
+                let again = goal_reward(&config, shown.info.achieved, shown.info.desired);
                 assert_eq!(shown.step.reward, again);
                 assert_eq!(shown.step.terminated, of == Control::Pattern);
                 reached += usize::from(again == 0.0);
@@ -234,7 +234,7 @@ fn time_limit_truncates() {
             );
             assert_eq!(shown.senses[10], f32::from(step) / 7.0);
         }
-        assert_eq!(record(&env).standing.outcome, Outcome::Timeout);
+        assert_eq!(record(&env).info.outcome, Outcome::Timeout);
     }
     let mut env = batch(control(Control::Pattern), 1, Autoreset::Disabled, 1, 5);
     env.step(&[0.5, -0.5]).unwrap();

@@ -277,7 +277,7 @@ fn soak_reaching(steps: usize) {
         let ask = |envs: &mut Batch<ReachTask>, i: usize, _: &mut Stream| {
             // The case of another environment, which can be played.
             let case = envs.state((i + 1) % ENVS).unwrap().case;
-            let request = babble_env::tasks::reach::case::CaseRequest {
+            let request = babble_env::tasks::reach::CaseRequest {
                 start: Some(case.hand),
                 target: Some(case.target),
                 ..Default::default()

@@ -22,8 +22,8 @@ fn tasks_keep_to_their_spec() {
             env.step(&actions.draw()).unwrap();
             for record in env.records() {
                 assert_eq!(record.senses.len(), senses);
-                assert!(spec.outcomes.contains(&record.standing.outcome.name()));
-                let unnamed = &record.standing.facts[spec.facts.len()..];
+                assert!(spec.outcomes.contains(&record.info.outcome.name()));
+                let unnamed = &record.info.facts[spec.facts.len()..];
                 assert!(unnamed.iter().all(|&fact| !fact));
             }
         }

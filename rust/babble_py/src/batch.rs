@@ -146,7 +146,7 @@ impl Batch {
     /// Achieved and desired goal of environment 0 (2,) \[m\].
     fn one_goals<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray1<f32>>>> {
         Ok(self.envs.read()?.record(0).map_or_else(Vec::new, |record| {
-            [record.standing.achieved, record.standing.desired]
+            [record.info.achieved, record.info.desired]
                 .map(|x| PyArray1::from_slice(py, &x))
                 .into()
         }))
@@ -255,24 +255,19 @@ impl Batch {
 
 impl Batch {
     fn show_one<'py>(&self, py: Python<'py>, envs: &dyn AnyBatch) -> PyResult<Bound<'py, PyTuple>> {
-        let Some(Record {
-            senses,
-            standing,
-            step,
-        }) = envs.record(0)
-        else {
+        let Some(Record { senses, info, step }) = envs.record(0) else {
             return Ok(PyTuple::empty(py));
         };
-        let info = named(py, &self.facts, &standing.facts)?;
-        info.set_item(intern!(py, "outcome"), standing.outcome.name())?;
+        let shown = named(py, &self.facts, &info.facts)?;
+        shown.set_item(intern!(py, "outcome"), info.outcome.name())?;
         let terms = named(py, &self.terms, &step.terms)?;
-        info.set_item(intern!(py, "reward_terms"), terms)?;
+        shown.set_item(intern!(py, "reward_terms"), terms)?;
         (
             PyArray1::from_slice(py, senses),
             step.reward,
             step.terminated,
             step.truncated,
-            info,
+            shown,
         )
             .into_pyobject(py)
     }
@@ -282,9 +277,9 @@ impl Batch {
         let dict = PyDict::new(py);
         let senses = table(py, self.senses, each().map(|r| &r.senses[..]))?;
         dict.set_item("senses", senses)?;
-        let achieved = table(py, 2, each().map(|r| &r.standing.achieved[..]))?;
+        let achieved = table(py, 2, each().map(|r| &r.info.achieved[..]))?;
         dict.set_item("achieved_goal", achieved)?;
-        let desired = table(py, 2, each().map(|r| &r.standing.desired[..]))?;
+        let desired = table(py, 2, each().map(|r| &r.info.desired[..]))?;
         dict.set_item("desired_goal", desired)?;
         let reward = PyArray1::from_iter(py, each().map(|r| r.step.reward));
         dict.set_item("reward", reward)?;
@@ -292,10 +287,10 @@ impl Batch {
         dict.set_item("terminated", terminated)?;
         let truncated = PyArray1::from_iter(py, each().map(|r| r.step.truncated));
         dict.set_item("truncated", truncated)?;
-        let outcome = PyArray1::from_iter(py, each().map(|r| r.standing.outcome as usize));
+        let outcome = PyArray1::from_iter(py, each().map(|r| r.info.outcome as usize));
         dict.set_item("outcome", outcome)?;
         let n = self.facts.len();
-        let facts = table(py, n, each().map(|r| &r.standing.facts[..n]))?;
+        let facts = table(py, n, each().map(|r| &r.info.facts[..n]))?;
         dict.set_item("facts", facts)?;
         let n = self.terms.len();
         let terms = table(py, n, each().map(|r| &r.step.terms[..n]))?;

@@ -2,3 +2,5 @@
 
 pub mod grasp;
 pub mod reach;
+#[cfg(feature = "toy")]
+pub mod toy;

@@ -4,15 +4,13 @@ use babble_body::Obstacle;
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
-use super::numbers::RegionNumbers;
-use super::task::GraspTask;
+use super::config::RegionConfig;
+use super::task::{GraspTask, MAX_TRIES};
 use crate::case::CaseValues;
 use crate::error::EnvError;
 use crate::stream::Stream;
 use crate::tasks::reach::case::{check_obstacle, obstacle_from, obstacle_value};
 
-/// How often a case is drawn before the config is called impossible.
-pub(super) const MAX_TRIES: u32 = 10_000;
 /// Least distance from the object to the point that it is to be carried to \[m\].
 const CARRY_M: f64 = 0.05;
 
@@ -229,14 +227,14 @@ fn check_goal(task: &GraspTask, case: &GraspCase, goal: [f64; 2]) -> Result<(), 
 }
 
 /// Uniform in distance and direction from the shoulder.
-fn draw_point(region: &RegionNumbers, stream: &mut Stream) -> [f64; 2] {
+fn draw_point(region: &RegionConfig, stream: &mut Stream) -> [f64; 2] {
     let radius = stream.uniform(region.radius_m[0], region.radius_m[1]);
     let polar = stream.uniform(region.polar_deg[0], region.polar_deg[1]);
     let (sin, cos) = libm::sincos(polar.to_radians());
     [radius * cos, radius * sin]
 }
 
-fn draw_start(task: &GraspTask, region: &RegionNumbers, stream: &mut Stream) -> [f64; 2] {
+fn draw_start(task: &GraspTask, region: &RegionConfig, stream: &mut Stream) -> [f64; 2] {
     let ranges = [region.shoulder_deg, region.elbow_deg];
     [0, 1].map(|i| {
         let [low, high] = ranges[i].map(f64::to_radians);

@@ -1,8 +1,8 @@
 //! Whether a state that somebody else wrote is one of this task's episodes.
 
 use super::enclosure::Grip;
-use super::episode::{GraspState, setup};
 use super::spec::OUTCOMES;
+use super::state::{GraspState, setup};
 use super::task::GraspTask;
 use crate::check::{age, ensure, refused, within};
 use crate::error::EnvError;

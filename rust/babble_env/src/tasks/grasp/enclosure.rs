@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::numbers::GraspNumbers;
+use super::config::GraspConfig;
 use crate::check::ensure;
 use crate::error::EnvError;
 
@@ -57,7 +57,7 @@ impl Default for Enclosure {
 impl Enclosure {
     /// One control step with its contacts. `in_hand`: whether the object is before the palm now.
     /// True if the support has to go.
-    pub fn step(&mut self, numbers: &GraspNumbers, contacts: Contacts, in_hand: bool) -> bool {
+    pub fn step(&mut self, numbers: &GraspConfig, contacts: Contacts, in_hand: bool) -> bool {
         let window = numbers.hold_steps as usize;
         if self.recent.len() == window {
             self.recent.remove(0);
@@ -94,13 +94,13 @@ impl Enclosure {
     /// How much of the last second the hand had the object between its sides, in \[0, 1\]: half of it
     /// is the share with a finger's contact, half that with the thumb's or the palm's.
     #[must_use]
-    pub fn share(&self, numbers: &GraspNumbers) -> f64 {
+    pub fn share(&self, numbers: &GraspConfig) -> f64 {
         let both = self.sum(|contacts| contacts.fingers) + self.sum(|contacts| contacts.opposite);
         both / f64::from(2 * numbers.hold_steps * numbers.physics_steps)
     }
 
     /// Checks what somebody else wrote of an episode of so many control steps.
-    pub(super) fn check(&self, numbers: &GraspNumbers, steps: u32) -> Result<(), EnvError> {
+    pub(super) fn check(&self, numbers: &GraspConfig, steps: u32) -> Result<(), EnvError> {
         let most = numbers.hold_steps.min(steps) as usize;
         let seen = self.recent.len();
         ensure(seen <= most, || {

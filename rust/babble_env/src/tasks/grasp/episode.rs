@@ -1,87 +1,25 @@
-//! One episode of grasping: `GraspState` is all that changes.
+//! One episode of grasping.
 
-use babble_body::robot::{
-    Ball, MuscleCommand, MuscleCommands, Posture, Setup, Touch, World, towards,
-};
-use babble_eye::Gaze;
-use serde::{Deserialize, Serialize};
+use babble_body::robot::{MuscleCommand, MuscleCommands, Posture, Touch, towards};
 
 use super::case::{GraspCase, GraspRequest};
 use super::check;
 use super::enclosure::{Contacts, Enclosure, Grip};
 use super::sight::{self, FOVEA_NEURONS};
+use super::state::{FACTS, GraspState, Moment, setup};
 use super::task::GraspTask;
 use crate::config::Config;
+use crate::episode::Ending;
 use crate::error::EnvError;
 use crate::options::{Control, Reward};
 use crate::outcome::Outcome;
 use crate::stream::Stream;
-use crate::task::{self, Episode, MAX_FACTS, MAX_TERMS, Phase, Standing, Step};
+use crate::task::{self, Episode, EpisodeInfo, MAX_FACTS, MAX_TERMS, Phase, Step};
 
-/// What is true or false of an episode.
-pub const FACTS: [&str; 5] = ["is_success", "ever_success", "reach", "palm_reach", "held"];
 /// Distance that the progress reward calls 1 \[m\].
 const PROGRESS_UNIT_M: f64 = 0.1;
 /// An object this far below the arm's plane was dropped \[m\].
 const DROPPED_M: f64 = 0.1;
-
-/// A recorded moment, for pictures.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Moment {
-    /// Angles of all joints \[rad\].
-    pub joints: Vec<f64>,
-    /// Centre of the object \[m\].
-    pub object: [f64; 3],
-    /// Centre of the palm \[m\].
-    pub palm: [f64; 2],
-    /// Where the eye looks \[rad\].
-    pub gaze: Gaze,
-}
-
-/// Everything that changes: what a snapshot holds.
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "each is a fact of the episode"
-)]
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct GraspState {
-    /// Arm, hand, object, support and obstacle.
-    pub world: World,
-    /// Equilibrium points of the muscles \[rad\].
-    pub equilibrium: Posture,
-    /// Start, object, goal.
-    pub case: GraspCase,
-    /// Pan and tilt \[rad\].
-    pub gaze: Gaze,
-    /// Mean normal forces of palm, thumb and fingers over the last control step \[N\].
-    pub touch: [f64; 3],
-    /// How far the grasp has come.
-    pub enclosure: Enclosure,
-    /// Whether the reflex has closed the hand.
-    pub reflex: bool,
-    /// Control steps since the reset.
-    pub steps: u32,
-    /// How it stands.
-    pub outcome: Outcome,
-    /// Whether the task is done now.
-    pub is_success: bool,
-    /// Whether it ever was.
-    pub ever_success: bool,
-    /// Whether any part of arm or hand has touched the object.
-    pub reach: bool,
-    /// Whether the palm has.
-    pub palm_reach: bool,
-    /// Distance of the object's centre from where the palm would hold it \[m\].
-    pub distance: f64,
-    /// Whether the episode runs.
-    pub phase: Phase,
-    /// What the user asked of the cases, kept for autoresets.
-    pub request: GraspRequest,
-    /// Random numbers for the cases to come.
-    pub stream: Stream,
-    /// Moments at the end of each control period, when they are recorded.
-    pub trail: Vec<Moment>,
-}
 
 /// One episode: its state and what follows from it.
 #[derive(Debug, Clone)]
@@ -94,7 +32,7 @@ pub struct Grasp {
 
 /// A new episode that was drawn and not begun yet.
 #[derive(Debug)]
-pub struct Drawn {
+pub struct NextEpisode {
     case: GraspCase,
     request: GraspRequest,
     stream: Stream,
@@ -128,7 +66,7 @@ impl Period {
 impl Episode for Grasp {
     type Task = GraspTask;
     type Request = GraspRequest;
-    type Drawn = Drawn;
+    type NextEpisode = NextEpisode;
     type State = GraspState;
 
     fn new(task: &GraspTask, stream: Stream) -> Self {
@@ -176,18 +114,18 @@ impl Episode for Grasp {
         self.asked = Some(request);
     }
 
-    fn draw(&mut self, task: &GraspTask) -> Result<Drawn, EnvError> {
+    fn draw(&mut self, task: &GraspTask) -> Result<NextEpisode, EnvError> {
         let request = self.asked.take().unwrap_or(self.state.request);
         let mut stream = self.state.stream.clone();
-        Ok(Drawn {
+        Ok(NextEpisode {
             case: request.draw(task, &mut stream)?,
             request,
             stream,
         })
     }
 
-    fn begin(&mut self, task: &GraspTask, drawn: Drawn) {
-        let Drawn {
+    fn begin(&mut self, task: &GraspTask, drawn: NextEpisode) {
+        let NextEpisode {
             case,
             request,
             stream,
@@ -242,7 +180,7 @@ impl Episode for Grasp {
         out[11] = (f64::from(state.steps) / limit).min(1.0) as f32;
     }
 
-    fn standing(&self, task: &GraspTask) -> Standing {
+    fn info(&self, task: &GraspTask) -> EpisodeInfo {
         let state = &self.state;
         let mut facts = [false; MAX_FACTS];
         facts[..FACTS.len()].copy_from_slice(&[
@@ -252,25 +190,12 @@ impl Episode for Grasp {
             state.palm_reach,
             state.enclosure.grip == Grip::Held,
         ]);
-        Standing {
+        EpisodeInfo {
             achieved: state.achieved(task),
             desired: state.desired(),
             outcome: state.outcome,
             facts,
         }
-    }
-}
-
-/// How the world of a case begins.
-pub(super) fn setup(task: &GraspTask, case: &GraspCase) -> Setup {
-    Setup {
-        posture: task.robot.open_hand(case.start),
-        ball: Ball {
-            centre: case.object,
-            radius: case.radius(),
-        },
-        support: true,
-        obstacle: case.obstacle,
     }
 }
 
@@ -405,29 +330,17 @@ impl GraspState {
 
     /// Success, reward and end of the step just made.
     fn judge(&mut self, task: &GraspTask, before: Potential) -> Step {
-        self.steps += 1;
         let done = if task.options.goal {
             goal_reward(&task.config, self.achieved(task), self.desired()) == 0.0
         } else {
             self.enclosure.grip == Grip::Held
         };
-        self.is_success = done && !self.failed();
-        self.ever_success |= self.is_success;
-        if self.is_success && !task.options.goal {
-            self.outcome = Outcome::Success;
-        }
-        let terminated = self.outcome != Outcome::Running && !task.options.goal;
-        let truncated = !terminated && self.steps >= task.options.max_episode_steps;
-        if truncated && self.outcome == Outcome::Running {
-            self.outcome = if self.is_success {
-                Outcome::Success
-            } else {
-                Outcome::Timeout
-            };
-        }
-        if terminated || truncated {
-            self.phase = Phase::Ended;
-        }
+        let ending = Ending {
+            goal: task.options.goal,
+            single_step: false,
+            max_steps: task.options.max_episode_steps,
+        };
+        let [terminated, truncated] = ending.conclude(self.progress(), done);
         let terms = self.reward_terms(task, before);
         Step {
             reward: terms.iter().sum(),

@@ -2,24 +2,27 @@
 
 pub mod case;
 mod check;
+pub mod config;
 mod enclosure;
 mod entry;
 mod episode;
+mod face;
 mod in_hand;
-mod numbers;
 mod options;
 mod picture;
 pub mod protocol;
 mod sight;
 mod spec;
+mod state;
 mod task;
 
 pub use case::{GraspCase, GraspRequest};
+pub use config::{GraspConfig, RegionConfig};
 pub use enclosure::{Contacts, Enclosure, Grip};
 pub(crate) use entry::ENTRY;
-pub use episode::{Drawn, FACTS, Grasp, GraspState, goal_reward};
+pub use episode::{Grasp, NextEpisode, goal_reward};
 pub use in_hand::InHand;
-pub use numbers::{GraspNumbers, RegionNumbers};
 pub use options::{GraspOptions, Region};
 pub use sight::{FOVEA_NEURONS, see};
+pub use state::{FACTS, GraspState};
 pub use task::GraspTask;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::choice::named_enum;
+use crate::named_enum::named_enum;
 use crate::options::{Control, Reward};
 
 named_enum!(

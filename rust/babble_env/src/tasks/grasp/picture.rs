@@ -5,8 +5,8 @@ use babble_body::visual;
 use image::RgbImage;
 use nalgebra::{Vector2, Vector3};
 
-use super::episode::{GraspState, Moment};
 use super::sight;
+use super::state::{GraspState, Moment};
 use super::task::GraspTask;
 use crate::error::EnvError;
 use crate::picture::{Scene, View, no_such_frame};

@@ -1,7 +1,5 @@
 //! The paper's tests by name: the same cases for every agent.
 
-use rayon::prelude::*;
-
 use super::case::{GraspCase, GraspRequest};
 use super::task::GraspTask;
 use crate::error::EnvError;
@@ -30,24 +28,18 @@ pub fn fig7(task: &GraspTask) -> Vec<Option<GraspCase>> {
 /// `n` random cases of the task's region. Case i depends on `purpose`, `seed` and i alone.
 ///
 /// # Errors
-/// [`EnvError::NoGraspCase`] when the config leaves no room, or an error of the pool.
+/// [`EnvError::NoGraspCase`] when the config leaves no room, or an error of the executor.
 pub fn random(
     task: &GraspTask,
     n: usize,
     seed: u64,
     purpose: Purpose,
-    pool: &mut Executor,
+    executor: &mut Executor,
 ) -> Result<Vec<GraspCase>, EnvError> {
     let request = GraspRequest::default();
-    pool.run_until(|stop| {
-        (0..n as u64)
-            .into_par_iter()
-            .map(|i| {
-                stop.check()?;
-                request.draw(task, &mut Stream::new(purpose, seed, i))
-            })
-            .collect()
-    })?
+    executor.map(0..n, |i| {
+        request.draw(task, &mut Stream::new(purpose, seed, i as u64))
+    })
 }
 
 fn grid(task: &GraspTask, starts: usize) -> Vec<Option<GraspCase>> {

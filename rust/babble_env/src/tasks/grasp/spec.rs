@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use babble_eye::FOVEA_BLOCKS;
 
-use super::episode::FACTS;
 use super::sight::FOVEA_NEURONS;
+use super::state::FACTS;
 use super::task::GraspTask;
 use crate::options::{Control, Reward};
 use crate::outcome::Outcome;

@@ -1,19 +1,16 @@
 //! Start, target and obstacle of one episode.
 
 use babble_body::Obstacle;
+use babble_body::visual;
+use babble_eye::Gaze;
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
-use super::movement::{Fidelity, MovementPath};
 use super::task::ReachTask;
 use crate::case::{CaseValue, CaseValues};
 use crate::error::EnvError;
-use crate::stream::Stream;
+use crate::outcome::Outcome;
 
-/// How often a case is drawn before the config is called impossible.
-const MAX_TRIES: u32 = 100_000;
-/// The same for cases around an obstacle that a user placed, each of which is legal by itself.
-const MAX_TRIES_AROUND: u32 = 1_000;
 /// Greatest coordinate of an obstacle that a user places \[m\].
 const FAR_M: f64 = 10.0;
 
@@ -75,50 +72,6 @@ impl ReachCase {
         })
     }
 
-    /// A random geometry: target uniform in joint space, start in a uniform direction at a uniform
-    /// distance from it (\[C\], paper-model item 16).
-    ///
-    /// # Errors
-    /// [`EnvError::NoLegalCase`] when the config leaves no room for one.
-    pub fn draw_geometry(task: &ReachTask, stream: &mut Stream) -> Result<Self, EnvError> {
-        let [near, far] = task.config.reach.distance_m;
-        for _ in 0..MAX_TRIES {
-            let q = task
-                .arm
-                .denormalised([stream.uniform(0.0, 1.0), stream.uniform(0.0, 1.0)]);
-            let target = task.arm.fingertip(q);
-            let (sin, cos) = libm::sincos(stream.uniform(0.0, std::f64::consts::TAU));
-            let distance = stream.uniform(near, far);
-            let hand = target + Vector2::new(cos, sin) * distance;
-            if let Some(case) = Self::between(task, hand, target) {
-                return Ok(case);
-            }
-        }
-        Err(EnvError::NoLegalCase { tries: MAX_TRIES })
-    }
-
-    /// The case of a babbled movement that was legal: geometry and b1 are drawn until one is.
-    ///
-    /// Such a case can be solved, as those of the paper's test set can.
-    ///
-    /// # Errors
-    /// [`EnvError::NoLegalCase`] when the config leaves no room for one.
-    pub fn draw_legal(
-        task: &ReachTask,
-        stream: &mut Stream,
-        fidelity: Fidelity,
-    ) -> Result<Self, EnvError> {
-        for _ in 0..MAX_TRIES {
-            let case = Self::draw_geometry(task, stream)?;
-            let [low, high] = task.config.reach.b_range;
-            let b1 = stream.uniform(low, high);
-            if MovementPath::new(task, &case, [b1, 1.0 - b1])?.is_legal(task, &case, fidelity) {
-                return Ok(case);
-            }
-        }
-        Err(EnvError::NoLegalCase { tries: MAX_TRIES })
-    }
-
     /// The case as named values.
     pub(super) fn values(&self) -> CaseValues {
         let values = CaseValues::default()
@@ -134,7 +87,7 @@ impl ReachCase {
     }
 }
 
-fn posture_for(
+pub(super) fn posture_for(
     task: &ReachTask,
     what: &'static str,
     point: [f64; 2],
@@ -158,6 +111,39 @@ fn posture_for(
     )))
 }
 
+impl ReachTask {
+    /// Outcome of a movement that ended undisturbed in posture `q`.
+    #[must_use]
+    pub fn end_of_movement(&self, case: &ReachCase, q: [f64; 2]) -> Outcome {
+        if self.distance(case, q) <= self.config.reach.success_radius_m {
+            Outcome::Success
+        } else {
+            Outcome::Timeout
+        }
+    }
+
+    /// Distance from the fingertip to the target \[m\].
+    #[must_use]
+    pub fn distance(&self, case: &ReachCase, q: [f64; 2]) -> f64 {
+        (self.arm.fingertip(q) - Vector2::from(case.target)).norm()
+    }
+
+    /// The gaze that the reflex of Eq. 1 ends in for `case`, from pixels.
+    ///
+    /// The red of the target shows through obstacle and arm: Sect. II-A assumes that the eye always
+    /// foveates the target, and a solid obstacle of any height would hide it in some cases.
+    ///
+    /// # Errors
+    /// [`EnvError::Body`] when the eye cannot find the target.
+    pub fn foveate(&self, case: &ReachCase) -> Result<Gaze, EnvError> {
+        let scene = [visual::target(&self.config.body, case.target)];
+        Ok(self
+            .eye
+            .foveate(&scene, self.eye.rest())
+            .map_err(babble_body::BodyError::from)?)
+    }
+}
+
 /// Checks an obstacle that a user placed.
 pub(crate) fn check_obstacle(obstacle: &Obstacle) -> Result<(), EnvError> {
     let near = obstacle.centre.iter().all(|x| x.abs() <= FAR_M);
@@ -174,7 +160,11 @@ pub(crate) fn check_obstacle(obstacle: &Obstacle) -> Result<(), EnvError> {
     })
 }
 
-fn check_clear(task: &ReachTask, obstacle: &Obstacle, start: [f64; 2]) -> Result<(), EnvError> {
+pub(super) fn check_clear(
+    task: &ReachTask,
+    obstacle: &Obstacle,
+    start: [f64; 2],
+) -> Result<(), EnvError> {
     let clearance = obstacle.clearance(&task.arm, start);
     if clearance > 0.0 {
         return Ok(());
@@ -183,169 +173,6 @@ fn check_clear(task: &ReachTask, obstacle: &Obstacle, start: [f64; 2]) -> Result
         what: "obstacle",
         problem: format!("the arm at the start is {:.4} m inside of it", -clearance),
     })
-}
-
-/// What a user asks of the cases to come. What is not asked for is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct CaseRequest {
-    /// Position of the fingertip at the start \[m\].
-    pub start: Option<[f64; 2]>,
-    /// Position of the target \[m\].
-    pub target: Option<[f64; 2]>,
-    /// The obstacle, or that there is none.
-    pub obstacle: ObstacleRequest,
-}
-
-/// What a user asks of the obstacle.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub enum ObstacleRequest {
-    /// Halfway between start and target.
-    #[default]
-    Halfway,
-    /// None.
-    Absent,
-    /// This one.
-    At(Obstacle),
-}
-
-impl CaseRequest {
-    /// What named values ask: without `obstacle` it stands halfway.
-    pub(super) fn from_values(task: &ReachTask, asked: &CaseValues) -> Self {
-        let radius = task.config.body.obstacle.radius_m;
-        Self {
-            start: asked.numbers("start"),
-            target: asked.numbers("target"),
-            obstacle: match (asked.get("obstacle"), obstacle_from(asked, radius)) {
-                (_, Some(obstacle)) => ObstacleRequest::At(obstacle),
-                (None, None) => ObstacleRequest::Halfway,
-                (Some(_), None) => ObstacleRequest::Absent,
-            },
-        }
-    }
-
-    /// Checks what is given by itself.
-    pub(super) fn check(&self, task: &ReachTask) -> Result<(), EnvError> {
-        for (what, point) in [("start", self.start), ("target", self.target)] {
-            if let Some(point) = point {
-                posture_for(task, what, point)?;
-            }
-        }
-        match &self.obstacle {
-            ObstacleRequest::At(obstacle) => check_obstacle(obstacle),
-            ObstacleRequest::Halfway | ObstacleRequest::Absent => Ok(()),
-        }
-    }
-
-    /// The next case that fulfils the request.
-    ///
-    /// # Errors
-    /// [`EnvError::Case`] for a part that cannot be played, [`EnvError::NoLegalCase`] when the rest
-    /// cannot be drawn.
-    pub fn draw(&self, task: &ReachTask, stream: &mut Stream) -> Result<ReachCase, EnvError> {
-        if let (Some(start), Some(target)) = (self.start, self.target) {
-            return self.both_given(task, start, target);
-        }
-        match self.obstacle {
-            ObstacleRequest::Halfway => self.draw_ends(task, stream),
-            ObstacleRequest::Absent => Ok(ReachCase {
-                obstacle: None,
-                ..self.draw_ends(task, stream)?
-            }),
-            ObstacleRequest::At(obstacle) => self.draw_around(task, stream, obstacle),
-        }
-    }
-
-    fn draw_ends(&self, task: &ReachTask, stream: &mut Stream) -> Result<ReachCase, EnvError> {
-        match (self.start, self.target) {
-            (None, None) => ReachCase::draw_legal(task, stream, Fidelity::QuasiStatic),
-            (start, target) => draw_other_end(task, stream, start, target),
-        }
-    }
-
-    /// Draws the ends until the arm at both of them is clear of a placed obstacle.
-    fn draw_around(
-        &self,
-        task: &ReachTask,
-        stream: &mut Stream,
-        obstacle: Obstacle,
-    ) -> Result<ReachCase, EnvError> {
-        check_obstacle(&obstacle)?;
-        if let Some(start) = self.start {
-            check_clear(task, &obstacle, posture_for(task, "start", start)?)?;
-        }
-        for _ in 0..MAX_TRIES_AROUND {
-            let case = self.draw_ends(task, stream)?;
-            let end = posture_for(task, "target", case.target)?;
-            if [case.start, end]
-                .iter()
-                .all(|&q| obstacle.clearance(&task.arm, q) > 0.0)
-            {
-                return Ok(ReachCase {
-                    obstacle: Some(obstacle),
-                    ..case
-                });
-            }
-        }
-        Err(EnvError::NoLegalCase {
-            tries: MAX_TRIES_AROUND,
-        })
-    }
-
-    fn both_given(
-        &self,
-        task: &ReachTask,
-        start: [f64; 2],
-        target: [f64; 2],
-    ) -> Result<ReachCase, EnvError> {
-        let halfway = || Obstacle {
-            centre: (Vector2::from(start) + Vector2::from(target)) / 2.0,
-            radius: task.config.body.obstacle.radius_m,
-        };
-        let obstacle = match self.obstacle {
-            ObstacleRequest::Halfway => Some(halfway()),
-            ObstacleRequest::Absent => None,
-            ObstacleRequest::At(obstacle) => Some(obstacle),
-        };
-        ReachCase::chosen(task, start, target, obstacle)
-    }
-}
-
-/// Draws the end that was not given, at a uniform direction and distance from the one that was.
-fn draw_other_end(
-    task: &ReachTask,
-    stream: &mut Stream,
-    start: Option<[f64; 2]>,
-    target: Option<[f64; 2]>,
-) -> Result<ReachCase, EnvError> {
-    let (what, given) = match (start, target) {
-        (Some(start), _) => ("start", start),
-        (None, target) => ("target", target.unwrap_or_default()),
-    };
-    posture_for(task, what, given)?;
-    let [near, far] = task.config.reach.distance_m;
-    let given = Vector2::from(given);
-    for _ in 0..MAX_TRIES {
-        let (sin, cos) = libm::sincos(stream.uniform(0.0, std::f64::consts::TAU));
-        let other = given + Vector2::new(cos, sin) * stream.uniform(near, far);
-        let (hand, target) = if start.is_some() {
-            (given, other)
-        } else {
-            (other, given)
-        };
-        let [low, high] = task.config.reach.b_range;
-        let b1 = stream.uniform(low, high);
-        let Some(case) = ReachCase::between(task, hand, target) else {
-            continue;
-        };
-        if MovementPath::new(task, &case, [b1, 1.0 - b1])?.is_legal(
-            task,
-            &case,
-            Fidelity::QuasiStatic,
-        ) {
-            return Ok(case);
-        }
-    }
-    Err(EnvError::NoLegalCase { tries: MAX_TRIES })
 }
 
 /// The config's obstacle with its axis through a point of the plane \[m\].

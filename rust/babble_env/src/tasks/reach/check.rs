@@ -1,8 +1,8 @@
 //! Whether a state that somebody else wrote is one of this task's episodes.
 
 use super::case::ReachCase;
-use super::episode::ReachState;
 use super::spec::OUTCOMES;
+use super::state::ReachState;
 use super::task::ReachTask;
 use crate::check::{MARGIN, age, ensure, refused, within};
 use crate::error::EnvError;

@@ -1,61 +1,24 @@
-//! One episode of reaching: `ReachState` is all that changes.
+//! One episode of reaching.
 
 use babble_body::{ArmState, Obstacle};
 use babble_eye::{Gaze, Pinhole};
-use serde::{Deserialize, Serialize};
 
-use super::case::{CaseRequest, ReachCase};
+use super::case::ReachCase;
 use super::check;
 use super::movement::{Fidelity, MovementPath};
+use super::request::CaseRequest;
+use super::state::{EVER_SUCCESS, IS_SUCCESS, ReachState};
 use super::task::ReachTask;
 use crate::config::Config;
+use crate::episode::Ending;
 use crate::error::EnvError;
 use crate::options::{Control, Reward};
 use crate::outcome::Outcome;
 use crate::stream::Stream;
-use crate::task::{self, Episode, MAX_FACTS, MAX_TERMS, Phase, Standing, Step};
+use crate::task::{self, Episode, EpisodeInfo, MAX_FACTS, MAX_TERMS, Phase, Step};
 
-/// Numbers in a flat observation: eye 2, obstacle 2, hand 2, arm 2, stretch 2, time 1.
-pub const SENSES: usize = 11;
-/// What is true or false of an episode.
-pub(super) const FACTS: [&str; 2] = ["is_success", "ever_success"];
-/// Place of [`ReachState::is_success`] among the facts.
-pub const IS_SUCCESS: usize = 0;
-/// Place of [`ReachState::ever_success`] among the facts.
-pub const EVER_SUCCESS: usize = 1;
 /// Distance that the progress reward calls 1 \[m\].
 const PROGRESS_UNIT_M: f64 = 0.1;
-
-/// Everything that changes: what a snapshot holds.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ReachState {
-    /// Posture and speeds.
-    pub arm: ArmState,
-    /// Equilibrium points of the muscles \[rad\].
-    pub equilibrium: [f64; 2],
-    /// Start, target, obstacle.
-    pub case: ReachCase,
-    /// Pan and tilt \[rad\].
-    pub gaze: Gaze,
-    /// Control steps since the reset.
-    pub steps: u32,
-    /// How it stands.
-    pub outcome: Outcome,
-    /// Whether the fingertip is at the target now.
-    pub is_success: bool,
-    /// Whether it ever was.
-    pub ever_success: bool,
-    /// Distance from fingertip to target \[m\].
-    pub distance: f64,
-    /// Whether the episode runs.
-    pub phase: Phase,
-    /// What the user asked of the cases, kept for autoresets.
-    pub request: CaseRequest,
-    /// Random numbers for the cases to come.
-    pub stream: Stream,
-    /// Postures at the end of each control period, when they are recorded.
-    pub trail: Vec<[f64; 2]>,
-}
 
 /// One episode: its state and what follows from it.
 #[derive(Debug, Clone)]
@@ -68,7 +31,7 @@ pub struct Reach {
 
 /// A new episode that was drawn and not begun yet.
 #[derive(Debug, Clone)]
-pub struct Drawn {
+pub struct NextEpisode {
     case: ReachCase,
     gaze: Gaze,
     request: CaseRequest,
@@ -98,7 +61,7 @@ impl Sight {
 impl Episode for Reach {
     type Task = ReachTask;
     type Request = CaseRequest;
-    type Drawn = Drawn;
+    type NextEpisode = NextEpisode;
     type State = ReachState;
 
     fn new(task: &ReachTask, stream: Stream) -> Self {
@@ -162,11 +125,11 @@ impl Episode for Reach {
     }
 
     /// Also lets the eye find the target.
-    fn draw(&mut self, task: &ReachTask) -> Result<Drawn, EnvError> {
+    fn draw(&mut self, task: &ReachTask) -> Result<NextEpisode, EnvError> {
         let request = self.asked.take().unwrap_or(self.state.request);
         let mut stream = self.state.stream.clone();
         let case = request.draw(task, &mut stream)?;
-        Ok(Drawn {
+        Ok(NextEpisode {
             gaze: task.foveate(&case)?,
             case,
             request,
@@ -174,8 +137,8 @@ impl Episode for Reach {
         })
     }
 
-    fn begin(&mut self, task: &ReachTask, drawn: Drawn) {
-        let Drawn {
+    fn begin(&mut self, task: &ReachTask, drawn: NextEpisode) {
+        let NextEpisode {
             case,
             gaze,
             request,
@@ -239,13 +202,13 @@ impl Episode for Reach {
             (f64::from(state.steps) / f64::from(task.options.max_episode_steps)).min(1.0) as f32;
     }
 
-    fn standing(&self, task: &ReachTask) -> Standing {
+    fn info(&self, task: &ReachTask) -> EpisodeInfo {
         let state = &self.state;
         let tip: [f64; 2] = task.arm.fingertip(state.arm.q).into();
         let mut facts = [false; MAX_FACTS];
         facts[IS_SUCCESS] = state.is_success;
         facts[EVER_SUCCESS] = state.ever_success;
-        Standing {
+        EpisodeInfo {
             achieved: tip.map(|x| x as f32),
             desired: state.case.target.map(|x| x as f32),
             outcome: state.outcome,
@@ -309,39 +272,21 @@ impl Reach {
     /// Success, reward and end of the step just made.
     fn judge(&mut self, task: &ReachTask, before: f64) -> Step {
         let state = &mut self.state;
-        let pattern = task.options.control == Control::Pattern;
-        state.steps += 1;
         state.distance = task.distance(&state.case, state.arm.q);
-        let rested = state
-            .arm
-            .v
-            .iter()
-            .all(|v| v.abs() < task.config.reach.settled_speed_rad_s);
+        let fastest = task.config.reach.settled_speed_rad_s;
+        let rested = state.arm.v.iter().all(|v| v.abs() < fastest);
         let at_target = if task.options.goal {
             goal_reached(task, state)
         } else {
             state.distance <= task.config.reach.success_radius_m
                 && (rested || !task.options.settled)
         };
-        // In the goal form a collided arm may still earn the reward, which knows positions alone.
-        state.is_success =
-            at_target && matches!(state.outcome, Outcome::Running | Outcome::Success);
-        state.ever_success |= state.is_success;
-        if state.outcome == Outcome::Running && state.is_success && !task.options.goal {
-            state.outcome = Outcome::Success;
-        }
-        let terminated = pattern || (state.outcome != Outcome::Running && !task.options.goal);
-        let truncated = !terminated && state.steps >= task.options.max_episode_steps;
-        if truncated && state.outcome == Outcome::Running {
-            state.outcome = if state.is_success {
-                Outcome::Success
-            } else {
-                Outcome::Timeout
-            };
-        }
-        if terminated || truncated {
-            state.phase = Phase::Ended;
-        }
+        let ending = Ending {
+            goal: task.options.goal,
+            single_step: task.options.control == Control::Pattern,
+            max_steps: task.options.max_episode_steps,
+        };
+        let [terminated, truncated] = ending.conclude(state.progress(), at_target);
         let terms = reward_terms(task, before, state);
         Step {
             reward: terms.iter().sum(),

@@ -2,18 +2,25 @@
 
 pub mod case;
 mod check;
+pub mod config;
 mod entry;
 mod episode;
+mod face;
 pub mod movement;
 mod options;
 mod picture;
 pub mod protocol;
+pub mod request;
 mod spec;
+mod state;
 mod task;
 
 pub use case::ReachCase;
+pub use config::ReachConfig;
 pub(crate) use entry::ENTRY;
-pub use episode::{Drawn, EVER_SUCCESS, IS_SUCCESS, Reach, ReachState, SENSES, goal_reward};
+pub use episode::{NextEpisode, Reach, goal_reward};
 pub use movement::{Movement, MovementPath};
 pub use options::{MAX_EPISODE_STEPS, ReachOptions};
+pub use request::{CaseRequest, ObstacleRequest};
+pub use state::{EVER_SUCCESS, IS_SUCCESS, ReachState, SENSES};
 pub use task::ReachTask;

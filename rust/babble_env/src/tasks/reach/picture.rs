@@ -5,7 +5,7 @@ use babble_eye::Primitive;
 use image::RgbImage;
 use nalgebra::Vector2;
 
-use super::episode::ReachState;
+use super::state::ReachState;
 use super::task::ReachTask;
 use crate::error::EnvError;
 use crate::picture::{Scene, View, no_such_frame};

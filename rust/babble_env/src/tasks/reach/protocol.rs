@@ -1,7 +1,6 @@
 //! The paper's tests by name: the same cases for every agent.
 
 use nalgebra::Vector2;
-use rayon::prelude::*;
 
 use super::case::ReachCase;
 use super::movement::Fidelity;
@@ -19,23 +18,21 @@ const FIG4_STARTS: usize = 36;
 /// Case i depends on `purpose`, `seed` and i alone.
 ///
 /// # Errors
-/// [`EnvError::NoLegalCase`] when the config leaves no room, or an error of the pool.
+/// [`EnvError::NoLegalCase`] when the config leaves no room, or an error of the executor.
 pub fn table1(
     task: &ReachTask,
     n: usize,
     seed: u64,
     purpose: Purpose,
-    pool: &mut Executor,
+    executor: &mut Executor,
 ) -> Result<Vec<ReachCase>, EnvError> {
-    pool.run_until(|stop| {
-        (0..n as u64)
-            .into_par_iter()
-            .map(|i| {
-                stop.check()?;
-                ReachCase::draw_legal(task, &mut Stream::new(purpose, seed, i), Fidelity::Full)
-            })
-            .collect()
-    })?
+    executor.map(0..n, |i| {
+        ReachCase::draw_legal(
+            task,
+            &mut Stream::new(purpose, seed, i as u64),
+            Fidelity::Full,
+        )
+    })
 }
 
 /// Cases of Fig. 4: 36 starts on a circle around each of 4 targets, obstacle halfway. Starts from

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::episode::FACTS;
+use super::state::FACTS;
 use super::task::ReachTask;
 use crate::options::{Control, Reward};
 use crate::outcome::Outcome;

@@ -1,29 +1,13 @@
 //! Everything about reaching that stays the same within and between episodes.
 
-use babble_body::description::{self, LinkDescription};
-use babble_body::visual;
-use babble_body::{ArmState, Body, ContactWatch, Dynamics, Obstacle, PlanarArm};
-use babble_eye::{Eye, Gaze, Pinhole};
-use image::RgbImage;
+use babble_body::{ArmState, ContactWatch, Dynamics, Obstacle, PlanarArm};
+use babble_eye::{Eye, Pinhole};
 use nalgebra::{Vector2, Vector3};
-use serde::Serialize;
-use serde_json::{Value, json};
 
-use super::case::{CaseRequest, ReachCase};
-use super::entry::ENTRY;
-use super::episode::{Reach, ReachState, SENSES, goal_reward};
 use super::options::ReachOptions;
-use super::{picture, protocol, spec};
-use crate::case::{CasePart, CaseValues};
-use crate::config::{Config, ReachNumbers};
+use crate::config::Config;
 use crate::error::EnvError;
-use crate::executor::Executor;
-use crate::options::{Control, Reward, check_max_episode_steps};
-use crate::outcome::Outcome;
-use crate::picture::View;
-use crate::spec::Spec;
-use crate::stream::Purpose;
-use crate::task::Task;
+use crate::options::{Reward, check_max_episode_steps};
 
 /// Params of the reaching task.
 #[derive(Debug, Clone)]
@@ -38,134 +22,6 @@ pub struct ReachTask {
     pub dynamics: Dynamics,
     /// The eye.
     pub eye: Eye,
-}
-
-/// The part of a config that reaching depends on.
-#[derive(Serialize)]
-struct Fingerprint<'a> {
-    profile: &'a str,
-    body: &'a Body,
-    reach: &'a ReachNumbers,
-}
-
-impl Task for ReachTask {
-    type Episode = Reach;
-
-    const NAME: &'static str = "reaching";
-    const MAGIC: [u8; 4] = *b"BBRS";
-    const CASE_PARTS: &'static [CasePart] = ENTRY.case_parts;
-
-    fn min_per_thread(&self) -> usize {
-        // A whole movement, or a control step of about a microsecond.
-        match self.options.control {
-            Control::Pattern => 1,
-            _ => 8,
-        }
-    }
-
-    fn action_len(&self) -> usize {
-        2
-    }
-
-    fn senses_len(&self) -> usize {
-        SENSES
-    }
-
-    fn spec(&self) -> Spec {
-        spec::spec(self)
-    }
-
-    fn fingerprint(&self) -> impl Serialize {
-        // Recording is for pictures and changes no episode.
-        let options = ReachOptions {
-            record: false,
-            ..self.options
-        };
-        let Config {
-            profile,
-            body,
-            reach,
-            ..
-        } = &self.config;
-        let config = Fingerprint {
-            profile,
-            body,
-            reach,
-        };
-        (config, options)
-    }
-
-    fn config(&self) -> &Config {
-        &self.config
-    }
-
-    fn quantities(&self) -> Value {
-        let width = |i: usize| self.arm.upper_limit[i] - self.arm.lower[i];
-        json!({
-            "joint_range": [width(0), width(1)],
-            "delta_posture": self.config.reach.delta_posture_deg.to_radians(),
-            "b_range": self.config.reach.b_range,
-        })
-    }
-
-    fn robot(&self) -> Vec<LinkDescription> {
-        description::reaching(&self.config.body).to_vec()
-    }
-
-    fn goal_reward(&self, achieved: &[f32], desired: &[f32]) -> f64 {
-        goal_reward(
-            &self.config,
-            [0, 1].map(|i| achieved[i]),
-            [0, 1].map(|i| desired[i]),
-        )
-    }
-
-    fn request(&self, asked: &CaseValues) -> CaseRequest {
-        CaseRequest::from_values(self, asked)
-    }
-
-    fn case(&self, state: &ReachState) -> CaseValues {
-        state.case.values()
-    }
-
-    fn cases(
-        &self,
-        name: &str,
-        n: usize,
-        seed: u64,
-        purpose: Purpose,
-        executor: &mut Executor,
-    ) -> Result<Vec<Option<CaseValues>>, EnvError> {
-        let cases = if ENTRY.protocol(name)?.random {
-            let sampled = protocol::table1(self, n, seed, purpose, executor)?;
-            sampled.into_iter().map(Some).collect()
-        } else {
-            protocol::fig4(self)
-        };
-        Ok(cases
-            .iter()
-            .map(|case| Some(case.as_ref()?.values()))
-            .collect())
-    }
-
-    fn trail(&self, state: &ReachState) -> Vec<[f64; 2]> {
-        let tip = |&q| self.arm.fingertip(q).into();
-        state.trail.iter().map(tip).collect()
-    }
-
-    fn moments(&self, state: &ReachState) -> usize {
-        state.trail.len()
-    }
-
-    fn picture(
-        &self,
-        state: &ReachState,
-        view: View,
-        size: [u32; 2],
-        frame: Option<usize>,
-    ) -> Result<RgbImage, EnvError> {
-        picture::picture(self, state, view, size, frame)
-    }
 }
 
 impl ReachTask {
@@ -234,37 +90,6 @@ impl ReachTask {
         let muscles = &self.config.body.muscles;
         let settle_s = self.config.reach.settle_time_constants * muscles.kd / muscles.kp;
         (settle_s / self.config.reach.control_period_s).round() as usize
-    }
-
-    /// Outcome of a movement that ended undisturbed in posture `q`.
-    #[must_use]
-    pub fn end_of_movement(&self, case: &ReachCase, q: [f64; 2]) -> Outcome {
-        if self.distance(case, q) <= self.config.reach.success_radius_m {
-            Outcome::Success
-        } else {
-            Outcome::Timeout
-        }
-    }
-
-    /// Distance from the fingertip to the target \[m\].
-    #[must_use]
-    pub fn distance(&self, case: &ReachCase, q: [f64; 2]) -> f64 {
-        (self.arm.fingertip(q) - Vector2::from(case.target)).norm()
-    }
-
-    /// The gaze that the reflex of Eq. 1 ends in for `case`, from pixels.
-    ///
-    /// The red of the target shows through obstacle and arm: Sect. II-A assumes that the eye always
-    /// foveates the target, and a solid obstacle of any height would hide it in some cases.
-    ///
-    /// # Errors
-    /// [`EnvError::Body`] when the eye cannot find the target.
-    pub fn foveate(&self, case: &ReachCase) -> Result<Gaze, EnvError> {
-        let scene = [visual::target(&self.config.body, case.target)];
-        Ok(self
-            .eye
-            .foveate(&scene, self.eye.rest())
-            .map_err(babble_body::BodyError::from)?)
     }
 
     /// Angles of a point of the plane in the camera frame \[rad\].

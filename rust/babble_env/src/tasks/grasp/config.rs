@@ -1,8 +1,8 @@
-//! The grasping task's numbers.
+//! The part of a config that grasping has for itself.
 
 use serde::{Deserialize, Serialize};
 
-use crate::config::within;
+use crate::bounds::within;
 use crate::error::EnvError;
 
 /// Longest physics step \[s\]: in longer ones contacts tell nothing.
@@ -11,7 +11,7 @@ const LONGEST_STEP_S: f64 = 0.02;
 /// Where objects lie and arms start.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct RegionNumbers {
+pub struct RegionConfig {
     /// Distance of the object's centre from the shoulder: lowest and highest \[m\].
     pub radius_m: [f64; 2],
     /// Direction of the object from the shoulder, counter-clockwise from x: lowest and highest
@@ -23,10 +23,10 @@ pub struct RegionNumbers {
     pub elbow_deg: [f64; 2],
 }
 
-/// The grasping task's numbers.
+/// Values of grasping in a config.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct GraspNumbers {
+pub struct GraspConfig {
     /// Diameters of the objects \[m\]; 0.024 and 0.06 \[F\]. The 12 and 30 cm that the paper prints
     /// cannot be enclosed.
     pub diameters_m: Vec<f64>,
@@ -35,9 +35,9 @@ pub struct GraspNumbers {
     pub any_diameter_between: bool,
     /// Objects on the palm's side of the arm: radius 0.15…0.29 m, polar 40…160°, shoulder
     /// −75…−15°, elbow 5…90° \[C\] (body `icub`: polar 90…160°, shoulder −10…10°, elbow 15…90°).
-    pub palm_side: RegionNumbers,
+    pub palm_side: RegionConfig,
     /// Objects and starts all over the plane: radius 0.13…0.29 m, polar −20…160°, all postures \[C\].
-    pub full: RegionNumbers,
+    pub full: RegionConfig,
     /// Least distance from the open hand and the arm to the object at the start \[m\]; 0.005 \[C\].
     pub clearance_m: f64,
     /// Control steps over which a grasp must enclose the object, and over which it must then hold
@@ -64,20 +64,20 @@ pub struct GraspNumbers {
     pub physics_steps: u32,
 }
 
-impl GraspNumbers {
-    /// The numbers of body `paper`.
+impl GraspConfig {
+    /// The values of profile `paper`.
     #[must_use]
     pub fn paper() -> Self {
         Self {
             diameters_m: vec![0.024, 0.06],
             any_diameter_between: false,
-            palm_side: RegionNumbers {
+            palm_side: RegionConfig {
                 radius_m: [0.15, 0.29],
                 polar_deg: [40.0, 160.0],
                 shoulder_deg: [-75.0, -15.0],
                 elbow_deg: [5.0, 90.0],
             },
-            full: RegionNumbers {
+            full: RegionConfig {
                 radius_m: [0.13, 0.29],
                 polar_deg: [-20.0, 160.0],
                 shoulder_deg: [-360.0, 360.0],
@@ -96,12 +96,12 @@ impl GraspNumbers {
         }
     }
 
-    /// The numbers of body `icub`, whose shoulder turns less.
+    /// The values of profile `icub`, whose shoulder turns less.
     #[must_use]
     pub fn icub() -> Self {
         let paper = Self::paper();
         Self {
-            palm_side: RegionNumbers {
+            palm_side: RegionConfig {
                 polar_deg: [90.0, 160.0],
                 shoulder_deg: [-10.0, 10.0],
                 elbow_deg: [15.0, 90.0],
@@ -161,7 +161,7 @@ impl GraspNumbers {
     }
 }
 
-impl RegionNumbers {
+impl RegionConfig {
     fn validate(&self, name: &str) -> Result<(), EnvError> {
         for (field, [first, last], low, high) in [
             ("radius_m", self.radius_m, 0.01, 2.0),

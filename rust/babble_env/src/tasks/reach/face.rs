@@ -1,0 +1,153 @@
+//! Reaching as a task: what its parts are together.
+
+use babble_body::Body;
+use babble_body::description::{self, LinkDescription};
+use image::RgbImage;
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::config::ReachConfig;
+use super::entry::ENTRY;
+use super::episode::{Reach, goal_reward};
+use super::options::ReachOptions;
+use super::request::CaseRequest;
+use super::state::{ReachState, SENSES};
+use super::task::ReachTask;
+use super::{picture, protocol, spec};
+use crate::case::{CasePart, CaseValues};
+use crate::config::Config;
+use crate::error::EnvError;
+use crate::executor::Executor;
+use crate::options::Control;
+use crate::picture::View;
+use crate::spec::Spec;
+use crate::stream::Purpose;
+use crate::task::Task;
+
+/// The part of a config that reaching depends on.
+#[derive(Serialize)]
+struct Fingerprint<'a> {
+    profile: &'a str,
+    body: &'a Body,
+    reach: &'a ReachConfig,
+}
+
+impl Task for ReachTask {
+    type Episode = Reach;
+
+    const NAME: &'static str = "reaching";
+    const MAGIC: [u8; 4] = *b"BBRS";
+    const CASE_PARTS: &'static [CasePart] = ENTRY.case_parts;
+
+    fn min_per_thread(&self) -> usize {
+        // A whole movement, or a control step of about a microsecond.
+        match self.options.control {
+            Control::Pattern => 1,
+            _ => 8,
+        }
+    }
+
+    fn action_len(&self) -> usize {
+        2
+    }
+
+    fn senses_len(&self) -> usize {
+        SENSES
+    }
+
+    fn spec(&self) -> Spec {
+        spec::spec(self)
+    }
+
+    fn fingerprint(&self) -> impl Serialize {
+        // Recording is for pictures and changes no episode.
+        let options = ReachOptions {
+            record: false,
+            ..self.options
+        };
+        let Config {
+            profile,
+            body,
+            reach,
+            ..
+        } = &self.config;
+        let config = Fingerprint {
+            profile,
+            body,
+            reach,
+        };
+        (config, options)
+    }
+
+    fn config(&self) -> &Config {
+        &self.config
+    }
+
+    fn quantities(&self) -> Value {
+        let width = |i: usize| self.arm.upper_limit[i] - self.arm.lower[i];
+        json!({
+            "joint_range": [width(0), width(1)],
+            "delta_posture": self.config.reach.delta_posture_deg.to_radians(),
+            "b_range": self.config.reach.b_range,
+        })
+    }
+
+    fn robot(&self) -> Vec<LinkDescription> {
+        description::reaching(&self.config.body).to_vec()
+    }
+
+    fn goal_reward(&self, achieved: &[f32], desired: &[f32]) -> f64 {
+        goal_reward(
+            &self.config,
+            [0, 1].map(|i| achieved[i]),
+            [0, 1].map(|i| desired[i]),
+        )
+    }
+
+    fn request(&self, asked: &CaseValues) -> CaseRequest {
+        CaseRequest::from_values(self, asked)
+    }
+
+    fn case(&self, state: &ReachState) -> CaseValues {
+        state.case.values()
+    }
+
+    fn cases(
+        &self,
+        name: &str,
+        n: usize,
+        seed: u64,
+        purpose: Purpose,
+        executor: &mut Executor,
+    ) -> Result<Vec<Option<CaseValues>>, EnvError> {
+        let cases = if ENTRY.protocol(name)?.random {
+            let sampled = protocol::table1(self, n, seed, purpose, executor)?;
+            sampled.into_iter().map(Some).collect()
+        } else {
+            protocol::fig4(self)
+        };
+        Ok(cases
+            .iter()
+            .map(|case| Some(case.as_ref()?.values()))
+            .collect())
+    }
+
+    fn trail(&self, state: &ReachState) -> Vec<[f64; 2]> {
+        let tip = |&q| self.arm.fingertip(q).into();
+        state.trail.iter().map(tip).collect()
+    }
+
+    fn moments(&self, state: &ReachState) -> usize {
+        state.trail.len()
+    }
+
+    fn picture(
+        &self,
+        state: &ReachState,
+        view: View,
+        size: [u32; 2],
+        frame: Option<usize>,
+    ) -> Result<RgbImage, EnvError> {
+        picture::picture(self, state, view, size, frame)
+    }
+}

@@ -25,7 +25,7 @@ EXTENSION_SOURCES := Cargo.toml Cargo.lock $(shell find rust -type f -not -name 
 	$(foreach folder,$(NOT_IN_EXTENSION),-not -path '*/$(folder)/*'))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-rust test-python slow soak fuzz golden-native lint lint-rust \
+.PHONY: help setup demo test test-rust test-python slow soak fuzz golden-native wasm lint lint-rust \
 	lint-python lint-workflows deny bench microbench frameworks constraints audit-export clean
 
 help: ## List the targets
@@ -59,6 +59,12 @@ fuzz: setup ## Run the property tests with fresh draws, and the fuzz targets if 
 # Naming the target keeps what it builds apart from what has other flags.
 golden-native: ## Compare the golden trajectories in a release build for this very processor
 	RUSTFLAGS='-C target-cpu=native' cargo run --release -p babble_golden --target "$$(rustc --print host-tuple)"
+
+# Features that need an operating system are off there: threads, clocks, rapier.
+wasm: ## Build the core crates for WebAssembly, and compare the golden trajectories there in Node
+	cargo build --release --target wasm32-unknown-unknown --no-default-features \
+		$(foreach crate,brain eye body env golden,-p babble_$(crate))
+	node .ci/wasm.mjs target/wasm32-unknown-unknown/release/babble_golden.wasm
 
 lint: lint-rust lint-python lint-workflows deny ## Check formatting, lints and types of both languages, and what they depend on
 

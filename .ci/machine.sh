@@ -70,3 +70,15 @@ ensure_rust_components() {
     shout "rustfmt or clippy is missing and rustup cannot add it: going on without linting Rust"
     return 1
 }
+
+# Node runs what is compiled for WebAssembly.
+ensure_wasm() {
+    command -v node >/dev/null || debian_install nodejs || {
+        shout "no node found, and it cannot be installed: going on without WebAssembly"
+        return 1
+    }
+    [[ -d $(rustc --print target-libdir --target wasm32-unknown-unknown) ]] && return
+    command -v rustup >/dev/null && rustup target add wasm32-unknown-unknown && return
+    shout "rustup cannot add the target wasm32-unknown-unknown: going on without WebAssembly"
+    return 1
+}

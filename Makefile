@@ -5,8 +5,8 @@
 #
 # The physics engine is the long compile, so it is compiled for two settings and no more: `release`
 # for the extension, the wheel and the benchmarks, and `test` for `cargo test`, which wants debug
-# assertions and links each test in a second instead of optimising the engine into each anew. Lint
-# only checks types, in the same directory.
+# assertions and optimises little. Lint only checks types, in the same directory. The golden
+# trajectories are compared in other builds by a program that needs the core crates alone.
 
 SHELL := /bin/bash
 PYTHON ?= python3

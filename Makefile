@@ -63,7 +63,7 @@ golden-native: ## Compare the golden trajectories in a release build for this ve
 # Features that need an operating system are off there: threads, clocks, rapier.
 wasm: ## Build the core crates for WebAssembly, and compare the golden trajectories there in Node
 	cargo build --release --target wasm32-unknown-unknown --no-default-features \
-		$(foreach crate,brain eye body env golden,-p babble_$(crate))
+		$(foreach crate,brain eye body env agent golden,-p babble_$(crate))
 	node .ci/wasm.mjs target/wasm32-unknown-unknown/release/babble_golden.wasm
 
 lint: lint-rust lint-python lint-workflows deny ## Check formatting, lints and types of both languages, and what they depend on

@@ -55,6 +55,12 @@ OF_ONE_TASK = re.compile(
     r"(?i)\w*(reach|grasp)\w*|\b(is|ever)_success\b|\b(obstacle|target|control|b1)\b"
 )
 
+# The packages and modules of gym_babble: each may import those before it.
+LAYERS = (
+    *("errors", "config", "progress", "envs", "brain", "agents", "export", "sb3"),
+    *("study", "viz", "paper", "report", "cli"),
+)
+
 HEAVY_MODULES = {"matplotlib", "pygame", "ray", "rich", "stable_baselines3", "torch", "typer"}
 
 
@@ -170,8 +176,15 @@ def test_few_files_of_a_crate_use_each_other_in_a_circle(repository):
 def test_no_modules_of_the_package_import_each_other_in_a_circle(repository):
     graph = python_graph(repository / "gym_babble")
     assert not circles(graph)
+
+
+def test_each_package_imports_those_below_it_alone(repository):
+    graph = python_graph(repository / "gym_babble")
     package = {name: name.removeprefix("gym_babble.").partition(".")[0] for name in graph}
-    assert not circles(merged(graph, package))
+    used = merged(graph, package)
+    assert set(used) == {"gym_babble", *LAYERS}  # A new package enters LAYERS first.
+    for k, name in enumerate(LAYERS):
+        assert used[name] <= set(LAYERS[:k]), name
 
 
 def test_import_loads_nothing_heavy(capsys):

@@ -87,7 +87,7 @@ impl Babble for ReachTask {
     }
 
     fn babble_steps(&self) -> usize {
-        self.config.reach.movement_steps()
+        self.config.reach.movement_steps() + self.settle_steps()
     }
 
     fn is_learnable(experience: &Experience) -> bool {

@@ -1,4 +1,4 @@
-"""Neural maps, associations, learning rules and pattern generators, for one's own experiments.
+"""Neural maps, associations, learning rules and pattern generators, for your own experiments.
 
     >>> import numpy as np
     >>> from gym_babble import brain
@@ -48,7 +48,7 @@ T = TypeVar("T", bound=np.generic)
 Floats: TypeAlias = NDArray[np.float32]
 
 OwnRule: TypeAlias = Callable[[Floats, Floats, Floats, Floats, Floats, float, float], Any]
-"""A learning rule of one's own: `f(a, a_mean, g, g_mean, w, eta, w_max)` returns Δw.
+"""A learning rule of your own: `f(a, a_mean, g, g_mean, w, eta, w_max)` returns Δw.
 
 `a` and `a_mean` (n_out,) are the output's activities and their running averages, `g` and `g_mean`
 (n_in,) those of the input, `w` (n_out, n_in) the weights before the step, all float32; `eta` and
@@ -155,9 +155,9 @@ class PopulationMap:
         return _each(self._core.read_out, a, np.float32)
 
     def read_out_peak(self, a: ArrayLike, radius: int = 2) -> NDArray[np.float64]:
-        """The same over the neurons at most `radius` places from the strongest one.
+        """The same mean, over the neurons within `radius` places of the strongest one.
 
-        Of two peaks it reads the stronger, where the mean would lie between them.
+        Given two peaks, this reads the higher one; the mean over all neurons lies between them.
         """
         return _each(lambda a: self._core.read_out(a, radius), a, np.float32)
 
@@ -190,7 +190,7 @@ class Association:
     Args:
         n_in: Neurons of the input map.
         n_out: Neurons of the output map.
-        rule: A rule of this module, its name, or a function of one's own (see `OwnRule`).
+        rule: A rule of this module, its name, or a function of your own (see `OwnRule`).
         numbers: `eta`, `w_max` and `xi`, where they differ from the rule's; a function is given
             η = 1, w_max = 0.2 and averages with ξ = 0.2.
         threads: Threads that learn; the bits do not depend on them.
@@ -226,8 +226,8 @@ class Association:
         ā_j ← ξ ā_j + (1 − ξ) a_j, and so ḡ_i.
 
         Raises:
-            ConfigError: Activities of another shape or outside of [0, 1], or what a function of
-                one's own returns is no Δw. Nothing is learnt then.
+            ConfigError: Activities of another shape or outside of [0, 1], or the result of a
+                function of your own is not a Δw. Nothing is learnt then.
         """
         gs = np.atleast_2d(np.asarray(g, np.float32))
         as_ = np.atleast_2d(np.asarray(a, np.float32))
@@ -311,7 +311,7 @@ def place(start: ArrayLike, target: ArrayLike, curve: ArrayLike) -> NDArray[np.f
 
 
 def is_own(rule: Any) -> bool:
-    """Whether a rule is a function of one's own."""
+    """Whether a rule is a function of the user's own."""
     return callable(rule) and not isinstance(rule, type)
 
 
@@ -336,7 +336,7 @@ def rule_numbers(rule: Any) -> dict[str, Any]:
 def teach(
     rule: OwnRule, numbers: dict[str, Any]
 ) -> Callable[[Floats, Floats, Floats, Floats, Floats], tuple[Floats, Floats, Floats]]:
-    """A function that learns m movements, one after the other, by a rule of one's own.
+    """A function that learns m movements, one after the other, by a rule of the user's own.
 
     It takes weights (n_out, n_in), averages ā (n_out,) and ḡ (n_in,), and activities g (m, n_in)
     and a (m, n_out); it returns the first three as they are after the movements.
@@ -376,7 +376,7 @@ def _check_change(change: NDArray[Any], w: Floats) -> None:
 
 
 def _each(function: Callable[[Any], NDArray[T]], values: ArrayLike, kind: Any) -> NDArray[T]:
-    """A function of a batch, of one value or of a batch."""
+    """Applies a function that takes a batch to one value or to a batch."""
     array = np.asarray(values, kind)
     found = function(np.ascontiguousarray(np.atleast_2d(array)))
     row: NDArray[T] = found if array.ndim > 1 else found[0]

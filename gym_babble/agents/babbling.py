@@ -1,4 +1,4 @@
-"""What motor babbling leaves behind, without learning from it."""
+"""The experiences of motor babbling, without learning from them."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from gym_babble import _core
-from gym_babble.agents.base import check_seed, interface_of, processors
-from gym_babble.envs.interface import check_whole
+from gym_babble.agents.base import interface_of, processors
+from gym_babble.envs.interface import check_seed, check_whole
 
 if TYPE_CHECKING:
     import numpy as np
@@ -22,7 +22,7 @@ __all__ = ["Experiences", "babble", "experiences_of"]
 
 @dataclass(frozen=True, kw_only=True)
 class Experiences:
-    """What n babbles left behind; row k is babble k."""
+    """The experiences of n babbles; row k is babble k."""
 
     percepts: dict[str, NDArray[np.float32]]
     """What was seen, by the names of the environment's senses: in reaching `eye` (n, 2) and
@@ -32,7 +32,7 @@ class Experiences:
     """What was done: in reaching the parameters `b` (n, 2); in grasping the postures `arm` (n, 2),
     as shares of the joint ranges, and `hand` (n, 2), EP = 90° − flexion [deg]."""
     case: dict[str, NDArray[np.float32]]
-    """What was drawn beside: in grasping the object's `diameter` (n, 1) [m]."""
+    """What else was sampled: in grasping the object's `diameter` (n, 1) [m]."""
     learnable: NDArray[np.bool_]
     """Which babbles can be learnt from (n,): the movement was legal, or the hand kept the object in
     sight of the eye. They are those that `HebbBabbling` learns from, in its order."""

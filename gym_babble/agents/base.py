@@ -26,7 +26,6 @@ __all__ = [
     "EnvLike",
     "Observation",
     "Planner",
-    "check_seed",
     "interface_of",
     "predictor",
     "processors",
@@ -221,12 +220,6 @@ class Planner:
         self._interface = Interface(
             task, config=json.loads(config), render_mode=render_mode, options=options
         )
-
-
-def check_seed(seed: int) -> None:
-    """Raises `ConfigError` unless the core can take the seed."""
-    if not 0 <= seed < 2**64:
-        raise ConfigError(f"seed = {seed} is not in [0, 2^64)")
 
 
 def processors(threads: int | None) -> int:

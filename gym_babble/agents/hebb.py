@@ -10,9 +10,9 @@ import numpy as np
 
 from gym_babble import _core
 from gym_babble.agents.babbling import experiences_of
-from gym_babble.agents.base import Planner, check_seed, interface_of, processors
+from gym_babble.agents.base import Planner, interface_of, processors
 from gym_babble.brain import is_own, rule_numbers, teach
-from gym_babble.envs.interface import Interface, check_whole
+from gym_babble.envs.interface import Interface, check_seed, check_whole
 from gym_babble.envs.registry import task_entry
 from gym_babble.errors import AgentFileError, ConfigError
 from gym_babble.progress import track

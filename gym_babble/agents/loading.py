@@ -1,4 +1,4 @@
-"""Agents by name, from a file, or of one's own by `module:Class`."""
+"""Agents by name, from a file, or your own by `module:Class`."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def load_agent(path: str | Path, env: EnvLike | None = None) -> HebbBabbling:
 def named_agent(
     name: str, *, env_id: str | None = None, config: ConfigLike | None = None, seed: int = 0
 ) -> LoadedAgent:
-    """An agent by name, from a file, or of one's own.
+    """An agent by name, from a file, or your own.
 
     Args:
         name: "random", "scripted" or "oracle"; a file that `HebbBabbling.save` wrote; a zip that
@@ -97,7 +97,7 @@ def named_agent(
 
 
 def own_agent(name: str, env: EnvLike, *, seed: int = 0) -> Agent:
-    """An agent of a class of one's own.
+    """An agent of your own class.
 
     Args:
         name: "module:Class". The module is found as Python finds modules, or in the current folder.

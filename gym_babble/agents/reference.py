@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gym_babble import _core
-from gym_babble.agents.base import Planner, check_seed, processors
+from gym_babble.agents.base import Planner, processors
+from gym_babble.envs.interface import check_seed
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -145,7 +145,7 @@ class BabbleEnv(gymnasium.Env[Any, Any]):
             AttributeError: The observations have no goals; stable-baselines3 goes by this.
         """
         if self._interface.obs != "goal":
-            raise AttributeError("compute_reward is there with obs='goal'")
+            raise AttributeError("compute_reward exists only with obs='goal'")
         return self._interface.goal_reward
 
     def render(self) -> Any:

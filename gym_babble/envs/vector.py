@@ -306,7 +306,7 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
             AttributeError: The observations have no goals; stable-baselines3 goes by this.
         """
         if self._interface.obs != "goal":
-            raise AttributeError("compute_reward is there with obs='goal'")
+            raise AttributeError("compute_reward exists only with obs='goal'")
         return self._interface.goal_reward
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:

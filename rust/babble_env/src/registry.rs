@@ -130,7 +130,7 @@ pub fn environment(id: &str) -> Result<(&'static TaskEntry, &'static Environment
         .ok_or_else(|| near::unknown("environment", id, known()))
 }
 
-/// The task of a registered environment, with a config and options of one's own.
+/// The task of a registered environment, with a given config and options.
 ///
 /// ```
 /// use babble_env::{Autoreset, Config, Executor};

@@ -5,8 +5,8 @@
 #
 # The physics engine is the long compile, so it is compiled for two settings and no more: `release`
 # for the extension, the wheel and the benchmarks, and `test` for `cargo test`, which wants debug
-# assertions and links each test in a second instead of optimising the engine into each anew. Lint
-# only checks types, in the same directory.
+# assertions and optimises little. Lint only checks types, in the same directory. The golden
+# trajectories are compared in other builds by a program that needs the core crates alone.
 
 SHELL := /bin/bash
 PYTHON ?= python3
@@ -63,7 +63,7 @@ golden-native: ## Compare the golden trajectories in a release build for this ve
 # Features that need an operating system are off there: threads, clocks, rapier.
 wasm: ## Build the core crates for WebAssembly, and compare the golden trajectories there in Node
 	cargo build --release --target wasm32-unknown-unknown --no-default-features \
-		$(foreach crate,brain eye body env golden,-p babble_$(crate))
+		$(foreach crate,brain eye body env agent golden,-p babble_$(crate))
 	node .ci/wasm.mjs target/wasm32-unknown-unknown/release/babble_golden.wasm
 
 lint: lint-rust lint-python lint-workflows deny ## Check formatting, lints and types of both languages, and what they depend on

@@ -92,7 +92,7 @@ def held() -> tuple[list[bytes], NDArray[np.float32]]:
     """
     envs = BabbleGraspVectorEnv(POOL, **HOLDING)
     observation, info = envs.reset(seed=0)
-    agent, grasping = gym_babble.GraspScripted(envs), None
+    agent, grasping = gym_babble.Scripted(envs), None
     for _ in range(EPISODE_STEPS):
         actions, grasping = agent.predict(observation, grasping)
         observation, _, _, _, info = envs.step(actions)

@@ -26,7 +26,7 @@ for kd in arguments.kd:
     cases = scenarios("table1", arguments.cases, config=config)
     result = evaluate(agent, cases=cases, config=config)
     print(
-        f"K_D {kd:g}: lag {kd / muscles.kp:.2f} s, legal {agent.legal_rate:.3f}, "
+        f"K_D {kd:g}: lag {kd / muscles.kp:.2f} s, legal {agent.learnt_rate:.3f}, "
         f"success {result.rate('success'):.3f}, collision {result.rate('collision'):.3f}, "
         f"joint_limit {result.rate('joint_limit'):.3f}"
     )

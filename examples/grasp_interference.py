@@ -10,7 +10,7 @@ import argparse
 import gymnasium as gym
 import numpy as np
 
-from gym_babble import Config, HebbGrasping, scenarios
+from gym_babble import Config, HebbBabbling, scenarios
 from gym_babble.envs import BabbleGraspEnv
 
 parser = argparse.ArgumentParser(description=__doc__)
@@ -32,7 +32,7 @@ CHANGES = [
 ]
 
 
-def recall(agent: HebbGrasping, diameter: float, seed: int) -> np.ndarray:
+def recall(agent: HebbBabbling, diameter: float, seed: int) -> np.ndarray:
     """Gap between palm and surface [cm], and EPs of thumb and finger [deg], of each case."""
     cases = [
         {**case, "diameter": diameter}
@@ -41,7 +41,7 @@ def recall(agent: HebbGrasping, diameter: float, seed: int) -> np.ndarray:
     ]
     envs = gym.make_vec("BabbleGrasp-v0", num_envs=len(cases))
     senses, _ = envs.reset(seed=0, options={"scenario": cases})
-    recalled = agent.decide(senses["eye"], senses["fovea"])
+    recalled = agent.decide(senses)
     low, high = BabbleGraspEnv().interface.quantities["ranges"][:2].T
     arms = low + recalled[:, :2] * (high - low)
     objects = np.array([case["object"] for case in cases])
@@ -63,16 +63,16 @@ for name, diameters, config, brain in CHANGES:
     hands: dict[float, list[np.ndarray]] = {SMALL: [], BIG: []}
     for seed in range(100, 100 + arguments.seeds):
         env = BabbleGraspEnv(diameters=diameters, config={"profile": "paper", **config})
-        agent = HebbGrasping(env, seed=seed, config=brain).learn(arguments.babbles)
-        left = agent.babbled
-        again = agent.decide(left["eye"], left["fovea"])[:, 2:]
+        agent = HebbBabbling(env, seed=seed, brain=brain).learn(arguments.babbles)
+        babbled = agent.experiences()
+        again = agent.decide(babbled.percepts)[:, 2:]
         for diameter in (SMALL, BIG):
-            of_size = left["diameter"] == diameter
+            of_size = babbled.case["diameter"][:, 0] == np.float32(diameter)
             found[diameter].append(recall(agent, diameter, seed))
-            hands[diameter].append(np.hstack([left["hand"][of_size], again[of_size]]))
+            hands[diameter].append(np.hstack([babbled.actions["hand"], again])[of_size])
     for diameter in (SMALL, BIG):
         cells = [f"{x.mean():.2f} ± {x.std():.2f}" for x in np.concatenate(found[diameter]).T]
-        babbled = np.concatenate(hands[diameter])
-        means = [f"{ep:.1f}" for ep in babbled.mean(axis=0)] if len(babbled) else ["–"] * 4
+        postures = np.concatenate(hands[diameter])
+        means = [f"{ep:.1f}" for ep in postures.mean(axis=0)] if len(postures) else ["–"] * 4
         cells += [", ".join(means[:2]), ", ".join(means[2:])]
         print(f"| {name} | {100 * diameter:g} cm | {' | '.join(cells)} |", flush=True)

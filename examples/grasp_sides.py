@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from gym_babble import GraspScripted, evaluate, scenarios
+from gym_babble import Scripted, evaluate, scenarios
 
 parser = argparse.ArgumentParser(description=__doc__)
 parser.add_argument("--cases", type=int, default=2_000, help="cases of the full region")
@@ -18,7 +18,7 @@ parser.add_argument("--bins", type=int, default=9)
 arguments = parser.parse_args()
 
 cases = scenarios("full", arguments.cases, split="validation")
-agent = GraspScripted()
+agent = Scripted("BabbleGrasp-v0")
 result = evaluate(agent, "BabbleGrasp-v0", cases, max_episode_steps=240, threads=os.cpu_count())
 polar = np.degrees([np.arctan2(case["object"][1], case["object"][0]) for case in cases])
 ahead = polar - np.degrees([case["start"][0] for case in cases])

@@ -14,9 +14,7 @@ arguments = parser.parse_args()
 
 agent = HebbBabbling("BabbleReachPattern-v0", variant="paper", seed=0)
 agent.learn(arguments.movements, progress_bar=True)
-print(
-    f"{agent.legal_rate:.3f} of {agent.movements} babbled movements were legal (paper: about .20)"
-)
+print(f"{agent.learnt_rate:.3f} of {agent.babbled} babbled movements were legal (paper: about .20)")
 
 result = evaluate(agent, "BabbleReachPattern-v0", scenarios("table1", arguments.cases))
 for outcome, paper in (("collision", 0.23), ("joint_limit", 0.10), ("success", 0.67)):

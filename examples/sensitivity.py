@@ -42,10 +42,10 @@ for name, changes, brain, movements in CHANGES:
     total, legal = Evaluation((), (), ()), 0.0
     for seed in range(100, 100 + arguments.seeds):
         env = BabbleReachEnv(control="pattern", reward="sparse", config=config)
-        agent = HebbBabbling(env, seed=seed, config=brain)
+        agent = HebbBabbling(env, seed=seed, brain=brain)
         agent.learn(arguments.movements or movements)
         cases = scenarios("table1", arguments.cases, seed, split="validation", config=config)
         total += evaluate(agent, cases=cases, config=config)
-        legal += agent.legal_rate / arguments.seeds
+        legal += agent.learnt_rate / arguments.seeds
     rates = (total.rate(outcome) for outcome in ("success", "collision", "joint_limit"))
     print(f"| {name} | {' | '.join(f'{rate:.3f}' for rate in rates)} | {legal:.3f} |", flush=True)

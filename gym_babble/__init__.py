@@ -13,13 +13,14 @@ import warnings
 
 from gym_babble._core import __version__, debug_build
 from gym_babble.agents import (
-    GraspRandom,
-    GraspScripted,
+    Agent,
+    Experiences,
     HebbBabbling,
-    HebbGrasping,
     Oracle,
-    RandomBabbling,
+    Random,
     Scripted,
+    babble,
+    load_agent,
 )
 from gym_babble.config import Config
 from gym_babble.envs.registration import register_all
@@ -28,20 +29,21 @@ from gym_babble.study.evaluation import Evaluation, evaluate
 from gym_babble.study.scenarios import Scenario, scenarios
 
 __all__ = [
+    "Agent",
     "Config",
     "Evaluation",
-    "GraspRandom",
-    "GraspScripted",
+    "Experiences",
     "HebbBabbling",
-    "HebbGrasping",
     "Oracle",
-    "RandomBabbling",
+    "Random",
     "Scenario",
     "Scripted",
     "__version__",
+    "babble",
     "evaluate",
     "export_mjcf",
     "export_urdf",
+    "load_agent",
     "scenarios",
 ]
 

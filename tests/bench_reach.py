@@ -78,4 +78,4 @@ def test_20_000_legal_movements_babbled_and_learnt(benchmark, quasi_static, thre
         return HebbBabbling(seed=0, quasi_static=quasi_static, threads=threads).learn(20_000)
 
     agent = benchmark.pedantic(learn, rounds=1)
-    benchmark.extra_info["legal_rate"] = agent.legal_rate
+    benchmark.extra_info["legal_rate"] = agent.learnt_rate

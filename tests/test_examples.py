@@ -16,6 +16,10 @@ RUNS = {
         "--movements 250 --cases 50",
         r"success 0\.\d+ \[0\.\d+, .+\] \(paper: 0\.67\)",
     ),
+    "own_rule.py": (
+        "--movements 20 --cases 20",
+        r"covariance: success 0\.\d+ \[0\.\d+, .+\]",
+    ),
     "custom_body.py": (
         "--movements 100 --cases 30 --kd 10 40",
         r"K_D 40: lag 0\.80 s, legal 0\.\d+, success 0\.\d+, .+",

@@ -12,7 +12,7 @@ from gym_babble import (
     Evaluation,
     HebbBabbling,
     Oracle,
-    RandomBabbling,
+    Random,
     Scripted,
     evaluate,
     scenarios,
@@ -158,7 +158,7 @@ def test_agents_are_ordered_as_documented():
     rates = {
         name: evaluate(agent, cases=cases).rate("success")
         for name, agent in (
-            ("random", RandomBabbling(seed=0)),
+            ("random", Random(seed=0)),
             ("hebb", HebbBabbling(seed=1).learn(2000)),
             ("scripted", Scripted()),
             ("oracle", Oracle()),

@@ -11,7 +11,7 @@ from gym_babble.cli import main
 FENCED = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 PAGES = (
     "README.md",
-    *(f"docs/{name}.md" for name in ("baselines", "environments", "export")),
+    *(f"docs/{name}.md" for name in ("baselines", "environments", "export", "extending")),
 )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from gym_babble import HebbGrasping, scenarios
+from gym_babble import HebbBabbling, scenarios
 from gym_babble.paper import fig7, fig8, holding, sight
 from gym_babble.paper import table2 as grasping
 from gym_babble.paper.tables import table2_tables
@@ -75,7 +75,7 @@ def test_tables_show_both_sizes_beside_the_paper(table):
 
 
 def test_trajectories_end_at_touched_objects():
-    agent = HebbGrasping(seed=1).learn(60)
+    agent = HebbBabbling("BabbleGrasp-v0", seed=1).learn(60)
     cases = [case for case in scenarios("fig7") if case["diameter"] == 0.06][::20]
     palms = fig7.trajectories(agent, cases)
     assert [one.case for one in palms] == cases
@@ -91,7 +91,7 @@ def test_trajectories_end_at_touched_objects():
 
 
 def test_fig8_shows_the_agents_own_weights():
-    agent = HebbGrasping(seed=1).learn(60)
+    agent = HebbBabbling("BabbleGrasp-v0", seed=1).learn(60)
     figure = fig8.draw(agent, eye=(0.5, 0.8))
     outward = next(ax for ax in figure.axes if "eye neuron" in ax.get_title(loc="left"))
     shown = outward.images[0].get_array()

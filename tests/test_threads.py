@@ -16,7 +16,8 @@ import pytest
 from comparing import BATCHES, TASKS, assert_same
 from processes import in_fork
 
-from gym_babble import HebbBabbling, HebbGrasping, Oracle, _core, scenarios
+from gym_babble import HebbBabbling, Oracle, _core, babble, scenarios
+from gym_babble.brain import Association
 from gym_babble.envs import BabbleGraspEnv, BabbleReachEnv, BabbleReachVectorEnv
 from gym_babble.errors import BabbleError, BusyError
 
@@ -95,9 +96,21 @@ def still(envs):
     return np.zeros(envs.action_space.shape, np.float32)
 
 
-def learning(make, n):
-    agent = make(threads=2)
+def hebb(env, **arguments):
+    """An agent of a task; a movement or 50 babbles are learnt together."""
+    return HebbBabbling(ENVS[env], **arguments)
+
+
+ENVS = {"reach": "BabbleReachPattern-v0", "grasp": "BabbleGrasp-v0"}
+
+
+def learning(task, n, **arguments):
+    agent = hebb(task, threads=2, **arguments)
     return lambda: agent.learn(n)
+
+
+def slow_rule(a, a_mean, g, g_mean, w, eta, w_max):  # noqa: PLR0917 - a rule's arguments
+    return eta * np.outer(a - a_mean, g - g_mean) * (w_max - abs(w))
 
 
 def foreseeing(n):
@@ -108,18 +121,20 @@ def foreseeing(n):
 # Each would take 10 s and more.
 FOREVER = {
     "make": lambda: lambda: _core.Batch(BabbleGraspEnv().interface.task, 200_000),
-    "learn": lambda: learning(HebbBabbling, 100_000),
+    "learn": lambda: learning("reach", 100_000),
+    "learn by a rule of one's own": lambda: learning("reach", 100_000, rule=slow_rule),
     "core learn": lambda: (
-        lambda: _core.Hebb(_core.Hebb.variant_config("paper"), 0, False, 1).learn(
+        lambda: _core.Learner("reach", _core.brain_json("reach", "paper"), 0, "null", 1).learn(
             BabbleReachEnv().interface.task, 100_000
         )
     ),
-    "learn to grasp": lambda: learning(HebbGrasping, 2_000),
+    "learn to grasp": lambda: learning("grasp", 2_000),
     "core learn to grasp": lambda: (
-        lambda: _core.GraspHebb(_core.GraspHebb.default_config(), 0, 2).learn(
+        lambda: _core.Learner("grasp", _core.brain_json("grasp", "paper"), 0, "null", 2).learn(
             BabbleGraspEnv().interface.task, 2_000
         )
     ),
+    "babble": lambda: lambda: babble("BabbleReach-v0", 1_000_000, threads=2),
     "table1": lambda: lambda: scenarios("table1", 100_000),
     "oracle": lambda: foreseeing(20_000),
     "hold": lambda: lambda: _core.hold(BabbleGraspEnv().interface.task, 0.05, 2_000, 2),
@@ -225,24 +240,23 @@ def test_after_an_interrupted_reset_those_that_it_chose_need_another():
         envs.step(still(envs))
 
 
-@pytest.mark.parametrize("make", [HebbBabbling, HebbGrasping])
-def test_interrupted_learning_is_as_after_its_last_whole_chunk(make):
-    agent = make(seed=2, threads=2)
-    chunk = 50 if make is HebbGrasping else 250
-    learnt = lambda: agent.kept if make is HebbGrasping else agent.legal_movements  # noqa: E731
+@pytest.mark.parametrize("rule", ["covariance", slow_rule])
+@each_task
+def test_interrupted_learning_is_as_after_its_last_whole_chunk(task, rule):
+    agent = hebb(task, rule=rule, seed=2, threads=2)
+    chunk = 50 if task == "grasp" else 250
 
     def arm(_):
-        if learnt() == chunk:
+        if agent.learnt == chunk:
             signal.setitimer(signal.ITIMER_REAL, 0.1)
 
     with alarm_after(60), pytest.raises(AlarmError):
         agent.learn(100_000, callback=arm)
-    assert learnt() >= chunk
-    assert learnt() % chunk == 0
-    other = make(seed=2, threads=1).learn(learnt())
+    assert agent.learnt >= chunk
+    assert agent.learnt % chunk == 0
+    other = hebb(task, rule=rule, seed=2, threads=1).learn(agent.learnt)
     assert_same(agent.weights, other.weights)
-    if make is HebbGrasping:
-        assert_same(agent.babbled, other.babbled)
+    assert agent.babbled == other.babbled
     assert_same(agent.learn(5).weights, other.learn(5).weights)
 
 
@@ -283,7 +297,7 @@ def test_a_handler_cannot_change_what_it_interrupts():
 INTERRUPTED = """
 import signal, time
 import numpy as np
-from gym_babble import HebbBabbling, HebbGrasping, Oracle, evaluate, scenarios
+from gym_babble import HebbBabbling, Oracle, evaluate, scenarios
 from gym_babble.study.compare import compare
 from gym_babble.study.contenders import Settings
 from gym_babble.envs import BabbleGraspVectorEnv, BabbleReachVectorEnv
@@ -304,7 +318,7 @@ for name, call in {
     "4,096 of reaching": stepping(BabbleReachVectorEnv(4096)),
     "4,096 of grasping": stepping(BabbleGraspVectorEnv(4096)),
     "HebbBabbling.learn": lambda: HebbBabbling().learn(10**6),
-    "HebbGrasping.learn": lambda: HebbGrasping().learn(10**5),
+    "HebbBabbling.learn to grasp": lambda: HebbBabbling("BabbleGrasp-v0").learn(10**5),
     "evaluate": lambda: evaluate(Oracle(), cases=cases),
     "compare": lambda: compare(["hebb-conjunctive"], Settings(movements=10**6)),
 }.items():
@@ -383,11 +397,11 @@ def test_two_threads_on_one_environment_get_an_error_and_no_step_is_lost(task, o
         assert "another thread" in str(busy[0])
 
 
-@pytest.mark.parametrize("make", [HebbBabbling, HebbGrasping])
-def test_two_threads_on_one_agent_get_an_error_and_nothing_is_learnt_twice(make):
-    agent = make(seed=4, threads=1)
+@each_task
+def test_two_threads_on_one_agent_get_an_error_and_nothing_is_learnt_twice(task):
+    agent = hebb(task, seed=4, threads=1)
     calls, busy = hammer(lambda: agent.learn(3), lambda _, busy: len(busy) >= 5)
-    other = make(seed=4, threads=1)
+    other = hebb(task, seed=4, threads=1)
     for _ in calls:
         other.learn(3)
     assert_same(agent.weights, other.weights)
@@ -399,20 +413,20 @@ def test_a_learning_agent_is_its_learners_alone():
     agent, told = HebbBabbling(quasi_static=True), []
 
     def ask():
-        for look in (lambda: agent.movements, lambda: agent.weights, lambda: agent.learn(1)):
+        for look in (lambda: agent.babbled, lambda: agent.weights, lambda: agent.learn(1)):
             with pytest.raises(BusyError):
                 look()
             told.append(look)
 
     def callback(learner):
-        assert learner.legal_movements == 250
+        assert learner.learnt == 250
         other = threading.Thread(target=ask)
         other.start()
         other.join()
 
     agent.learn(250, callback=callback)
     assert len(told) == 3
-    assert agent.learn(1).legal_movements == 251
+    assert agent.learn(1).learnt == 251
 
 
 def test_threads_that_only_look_do_not_hinder_each_other():
@@ -433,7 +447,7 @@ def test_another_thread_than_the_main_one_learns_and_hears_no_signal():
         learning = threads.submit(agent.learn, 500)
         with pytest.raises(AlarmError):
             time.sleep(5)
-        assert learning.result().legal_movements == 500
+        assert learning.result().learnt == 500
     assert heard
 
 
@@ -474,7 +488,7 @@ def test_a_forked_child_drops_what_has_threads_in_its_parent():
 
 def test_a_forked_child_learns_with_an_association_of_its_parents():
     g, a = np.ones(3_025, np.float32), np.ones(441, np.float32)
-    weights = _core.Association(len(g), len(a))
+    weights = Association(len(g), len(a), threads=2)
     weights.learn(g, a)
 
     def learn():

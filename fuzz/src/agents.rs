@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use babble_agent::{AgentError, grasp, store};
+use babble_agent::{AgentError, GraspNetwork, Learner, Network, ReachNetwork};
+use babble_env::Config;
 use safetensors::serialize;
 use safetensors::tensor::{Dtype, TensorView};
 use xxhash_rust::xxh3::Xxh3;
@@ -11,7 +12,7 @@ use xxhash_rust::xxh3::Xxh3;
 const FOVEA: usize = babble_env::tasks::grasp::FOVEA_NEURONS;
 
 /// Tensors of an association.
-const PARTS: [&str; 3] = ["weights", "a_bar", "g_bar"];
+const PARTS: [&str; 3] = ["weights", "a_mean", "g_mean"];
 
 /// An agent of reaching or grasping: a byte for the neurons along the maps, one for a tensor that is
 /// too long, eight that fill the tensors, then the JSON. Whether it is one.
@@ -26,18 +27,18 @@ pub fn agent_file(data: &[u8]) -> bool {
     let side = 2 + usize::from(numbers[0] % 4);
     let [n, fovea] = [side * side, FOVEA];
     for (key, names, lengths) in [
-        ("gym_babble", &PARTS[..], &[n * n, n, n][..]),
+        ("gym_babble.reach", &PARTS[..], &[n * n, n, n][..]),
         // Of the conjunctive map.
-        ("gym_babble", &PARTS, &[n * n * n, n, n * n]),
+        ("gym_babble.reach", &PARTS, &[n * n * n, n, n * n]),
         (
             "gym_babble.grasp",
             &[
                 "reach.weights",
-                "reach.a_bar",
-                "reach.g_bar",
+                "reach.a_mean",
+                "reach.g_mean",
                 "grasp.weights",
-                "grasp.a_bar",
-                "grasp.g_bar",
+                "grasp.a_mean",
+                "grasp.g_mean",
             ],
             &[n * n, n, n, fovea * n, n, fovea],
         ),
@@ -75,30 +76,40 @@ fn file(key: &str, json: &str, names: &[&str], tensors: &[Vec<u8>]) -> Vec<u8> {
 
 fn tried(bytes: &[u8]) -> bool {
     let mut taken = false;
-    match store::load(bytes) {
-        Ok((hebb, metadata)) => {
-            let [b1, b2] = hebb.decide([0.4, 0.6], [0.1, -0.2]).expect("a decision");
+    match Learner::<ReachNetwork>::load(bytes) {
+        Ok((learner, config)) => {
+            let [b1, b2] = learner
+                .network
+                .decide([0.4, 0.6], [0.1, -0.2])
+                .expect("a decision");
             assert!(b1.is_finite() && b2.is_finite());
-            let saved = store::save(&hebb, &metadata).expect("a file");
-            let (again, _) = store::load(&saved).expect("an agent that was saved is one");
-            assert_eq!(again.weights(), hebb.weights());
+            saved_again(&learner, config);
             taken = true;
         }
         Err(error) => named(&error),
     }
-    match grasp::load(bytes) {
-        Ok((hebb, babbling, config)) => {
-            let decided = hebb.decide([0.4, 0.6], &[0.5; FOVEA]).expect("a decision");
+    match Learner::<GraspNetwork>::load(bytes) {
+        Ok((learner, config)) => {
+            let decided = learner
+                .network
+                .decide([0.4, 0.6], &[0.5; FOVEA])
+                .expect("a decision");
             let postures = [decided.arm, decided.hand];
             assert!(postures.as_flattened().iter().all(|x| x.is_finite()));
-            let saved = grasp::save(&hebb, &babbling, config).expect("a file");
-            let (again, ..) = grasp::load(&saved).expect("an agent that was saved is one");
-            assert_eq!((again.reach(), again.grasp()), (hebb.reach(), hebb.grasp()));
+            saved_again(&learner, config);
             taken = true;
         }
         Err(error) => named(&error),
     }
     taken
+}
+
+/// An agent that is saved and read again has the same weights.
+fn saved_again<N: Network>(learner: &Learner<N>, config: Config) {
+    let saved = learner.save(config).expect("a file");
+    let (again, _) = Learner::<N>::load(&saved).expect("an agent that was saved is one");
+    let [ours, theirs] = [learner, &again].map(|learner| learner.network.associations());
+    assert_eq!(ours, theirs);
 }
 
 fn named(error: &AgentError) {

@@ -1,17 +1,18 @@
-"""Agents: anything with stable-baselines3's `predict`."""
+"""Agents: anything with `predict(observation)`, or with stable-baselines3's `predict`."""
 
+from gym_babble.agents.babbling import Experiences, babble
 from gym_babble.agents.base import Agent
-from gym_babble.agents.grasping import GraspRandom, GraspScripted, HebbGrasping
 from gym_babble.agents.hebb import HebbBabbling
-from gym_babble.agents.reference import Oracle, RandomBabbling, Scripted
+from gym_babble.agents.loading import load_agent
+from gym_babble.agents.reference import Oracle, Random, Scripted
 
 __all__ = [
     "Agent",
-    "GraspRandom",
-    "GraspScripted",
+    "Experiences",
     "HebbBabbling",
-    "HebbGrasping",
     "Oracle",
-    "RandomBabbling",
+    "Random",
     "Scripted",
+    "babble",
+    "load_agent",
 ]

@@ -1,43 +1,57 @@
-"""What all agents share: how they are called, where they act, numbers of their configs."""
+"""What all agents share: how they are called, where they act."""
 
 from __future__ import annotations
 
+import inspect
+import json
 import os
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeVar, runtime_checkable
 
 import gymnasium
 import numpy as np
 from gymnasium.vector import VectorEnv
 
 from gym_babble.envs.interface import Interface
-from gym_babble.envs.registry import task_entry
 from gym_babble.errors import ConfigError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
 
     from numpy.typing import NDArray
+
+    from gym_babble._core import Learner, Plans, Reference
 
 __all__ = [
     "Agent",
     "EnvLike",
-    "flat_senses",
+    "Observation",
+    "Planner",
+    "check_seed",
     "interface_of",
-    "merge",
+    "predictor",
     "processors",
 ]
 
-
-EnvLike = Any
+EnvLike: TypeAlias = Any
 """An id, or an environment: Gymnasium's, vector, or stable-baselines3's VecEnv."""
 
+Observation: TypeAlias = Any
+"""What an environment gives, of any `obs=`: a dict of arrays, or one flat array."""
 
+P = TypeVar("P", bound="Planner")
+
+
+@runtime_checkable
 class Agent(Protocol):
-    """What evaluation, comparison and videos need of an agent."""
+    """What evaluation, comparison and films need of an agent.
+
+    `predict(observation)` with this one argument is enough: such an agent is given one observation
+    at a time and returns an action.
+    """
 
     def predict(
         self,
-        observation: Any,
+        observation: Observation,
         state: Any = None,
         episode_start: Any = None,
         deterministic: bool = False,  # noqa: FBT001, FBT002 - stable-baselines3's signature
@@ -46,11 +60,71 @@ class Agent(Protocol):
         ...
 
 
-def interface_of(env: EnvLike, task: str) -> Interface:
-    """Options, spec and spaces of an environment of a task.
+def predictor(agent: Any) -> Any:
+    """`predict` of an agent with all four arguments, whichever of them it takes.
+
+    An agent of one argument is called for each environment of a batch by itself.
 
     Raises:
-        ConfigError: It is not an environment of this package for that task.
+        ConfigError: It has no `predict`.
+    """
+    predict = getattr(agent, "predict", None)
+    if not callable(predict):
+        raise ConfigError(f"{agent!r} is not an agent: it has no predict(observation)")
+    try:
+        parameters = list(inspect.signature(predict).parameters.values())
+    except ValueError:
+        return predict
+    positional = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    if any(p.kind is inspect.Parameter.VAR_POSITIONAL for p in parameters):
+        return predict
+    taken = [p.name for p in parameters if p.kind in positional]
+    if len(taken) >= 4:
+        return predict
+    if len(taken) > 1 or not taken:
+        raise ConfigError(
+            f"{agent!r} is not an agent: predict takes (observation), or (observation, state, "
+            f"episode_start, deterministic), and this one takes ({', '.join(taken)})"
+        )
+
+    def one_by_one(
+        observation: Observation, state: Any, episode_start: Any, deterministic: Any
+    ) -> tuple[Any, None]:
+        del state, deterministic
+        n = len(np.atleast_1d(episode_start))
+        if n == _batch_size(observation):
+            actions = [_action(predict(_row(observation, i))) for i in range(n)]
+            return np.stack(actions), None
+        return _action(predict(observation)), None
+
+    return one_by_one
+
+
+def _action(predicted: Any) -> Any:
+    """An action, also of an agent that returns a state beside it."""
+    return predicted[0] if isinstance(predicted, tuple) else predicted
+
+
+def _batch_size(observation: Observation) -> int | None:
+    """How many environments an observation is of; None for that of one environment."""
+    if isinstance(observation, dict):
+        first = next(iter(observation.values()))
+        # A retina has two more axes.
+        return len(first) if np.ndim(first) in {2, 4} else None
+    return len(observation) if np.ndim(observation) > 1 else None
+
+
+def _row(observation: Observation, i: int) -> Observation:
+    if isinstance(observation, dict):
+        return {name: value[i] for name, value in observation.items()}
+    return observation[i]
+
+
+def interface_of(env: EnvLike) -> Interface:
+    """Task, options and spaces of an environment.
+
+    Raises:
+        ConfigError: It is not an environment of this package.
     """
     if isinstance(env, str):
         env = gymnasium.make(env)
@@ -60,33 +134,99 @@ def interface_of(env: EnvLike, task: str) -> Interface:
         found = env.get_attr("interface")[0]
     else:
         found = getattr(env, "interface", None)
-    if not isinstance(found, Interface) or found.entry.name != task:
-        raise ConfigError(f"{env!r} is not a Babble environment for {task_entry(task).title}")
+    if not isinstance(found, Interface):
+        raise ConfigError(f"{env!r} is not a Babble environment")
     return found
 
 
-def flat_senses(observation: Any, names: Iterable[str]) -> NDArray[np.float32]:
-    """Flat senses (…, n) from any form of observation; `names` are the senses in their order."""
-    if not isinstance(observation, dict):
-        return np.asarray(observation, np.float32)
-    if "observation" in observation:
-        return np.asarray(observation["observation"], np.float32)
-    return np.concatenate([observation[name] for name in names], axis=-1)
+class Planner:
+    """An agent of the core: it decides at the beginning of an episode, and acts on it.
 
-
-def merge(numbers: dict[str, Any], changes: Mapping[str, Any], path: str) -> None:
-    """Replaces numbers of an agent's config.
-
-    Raises:
-        ConfigError: A field is not one there is.
+    In reaching it chooses a whole movement. In `pattern` control an action is its choice; in
+    `posture` and `delta_posture` control it plays the path of the pattern generators open loop. In
+    grasping it chooses a posture: the arm goes there with the hand open, and the hand closes when
+    it touches the object.
     """
-    for name, value in changes.items():
-        if name not in numbers:
-            raise ConfigError(f"{path}.{name}: unknown field; there are {', '.join(numbers)}")
-        if isinstance(numbers[name], dict) and hasattr(value, "items"):
-            merge(numbers[name], value, f"{path}.{name}")
-        else:
-            numbers[name] = value
+
+    _core: Learner | Reference
+
+    def __init__(self, env: EnvLike) -> None:
+        self._interface = interface_of(env)
+
+    @property
+    def interface(self) -> Interface:
+        """Task, options and spaces of the environment that it acts in."""
+        return self._interface
+
+    def predict(
+        self,
+        observation: Observation,
+        state: Plans | None = None,
+        episode_start: Any = None,
+        deterministic: bool = True,  # noqa: FBT001, FBT002 - stable-baselines3's signature
+    ) -> tuple[NDArray[np.float32], Plans]:
+        """Actions for an observation, or a batch of them, as stable-baselines3's agents give them.
+
+        Args:
+            observation: As the environment gives it, of any `obs=`.
+            state: What the last call returned; None at first.
+            episode_start: Which of the environments have begun a new episode (n,).
+            deterministic: Not used.
+
+        Returns:
+            Actions (k,) or (n, k), and the state for the next call.
+        """
+        del deterministic
+        senses = self._senses(observation)
+        batch = np.atleast_2d(senses)
+        starts = np.zeros(len(batch), np.bool_) if episode_start is None else episode_start
+        starts = np.broadcast_to(np.asarray(starts, np.bool_), len(batch)).tolist()
+        actions, state = self._core.predict(self._interface.task, batch, starts, state)
+        return (actions if senses.ndim > 1 else actions[0]), state
+
+    def _senses(self, observation: Observation) -> NDArray[np.float32]:
+        """Flat senses (m,) or (n, m) from any form of observation.
+
+        A dict need not have what its task's networks do not look at.
+        """
+        if not isinstance(observation, dict):
+            return np.ascontiguousarray(observation, np.float32)
+        if "observation" in observation:
+            return np.ascontiguousarray(observation["observation"], np.float32)
+        slices = self._interface.spec.slices
+        known = {name: np.asarray(observation[name]) for name, _ in slices if name in observation}
+        if not known:
+            raise ConfigError(
+                f"observation has {', '.join(map(str, observation))}, expected "
+                f"{', '.join(name for name, _ in slices)}"
+            )
+        shape = next(iter(known.values())).shape[:-1]
+        senses = np.zeros((*shape, slices[-1][1].stop), np.float32)
+        for name, part in slices:
+            if name in known:
+                senses[..., part] = known[name]
+        return senses
+
+    def __getstate__(self) -> dict[str, Any]:
+        interface = self._interface
+        defaults = interface.entry.defaults
+        options = {k: v for k, v in interface.options.items() if v != defaults.get(k)}
+        state = {k: v for k, v in self.__dict__.items() if k not in {"_interface", "_core"}}
+        where = (interface.entry.name, interface.task.config(), interface.render_mode, options)
+        return {**state, "_where": where}
+
+    def __setstate__(self, state: Mapping[str, Any]) -> None:
+        task, config, render_mode, options = state["_where"]
+        self.__dict__.update({k: v for k, v in state.items() if k != "_where"})
+        self._interface = Interface(
+            task, config=json.loads(config), render_mode=render_mode, options=options
+        )
+
+
+def check_seed(seed: int) -> None:
+    """Raises `ConfigError` unless the core can take the seed."""
+    if not 0 <= seed < 2**64:
+        raise ConfigError(f"seed = {seed} is not in [0, 2^64)")
 
 
 def processors(threads: int | None) -> int:

@@ -9,177 +9,302 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gym_babble import _core
-from gym_babble.agents.base import merge, processors
-from gym_babble.agents.movements import MovementAgent
-from gym_babble.envs import BabbleReachEnv
-from gym_babble.envs.interface import check_seed
+from gym_babble.agents.babbling import experiences_of
+from gym_babble.agents.base import Planner, check_seed, interface_of, processors
+from gym_babble.brain import is_own, rule_numbers, teach
+from gym_babble.envs.interface import Interface, check_whole
+from gym_babble.envs.registry import task_entry
 from gym_babble.errors import AgentFileError, ConfigError
 from gym_babble.progress import track
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
-    from gym_babble.agents.base import EnvLike
+    from gym_babble.agents.babbling import Experiences
+    from gym_babble.agents.base import EnvLike, Observation
+    from gym_babble.brain import OwnRule, RuleLike
 
 __all__ = ["VARIANTS", "HebbBabbling"]
 
 VARIANTS = ("paper", "conjunctive")
-MOVEMENTS_A_CALL = 250
+# How many babbles the paper's agent of a task learns from, and how many it learns from together.
+PAPER = {"reach": (20_000, 250), "grasp": (1_000, 50)}
+# The environment that an agent from a file acts in, by its task.
+ACTS_IN = {"reach": {"control": "pattern", "reward": "sparse"}, "grasp": {}}
 
 
-class HebbBabbling(MovementAgent):
-    """Learns by motor babbling which movement fits what is seen (Caligiore et al. 2008, Sect. III).
+class HebbBabbling(Planner):
+    """Learns by motor babbling (Caligiore et al. 2008).
 
-    Random movements are made; from each one that neither touches the obstacle nor leaves the joint
-    ranges, the covariance rule (Eq. 7) ties the obstacle's place in the eye-centred map to the
-    movement's parameters (b1, b2). Seeing an obstacle then recalls a movement (Eq. 4).
+    In reaching (Sect. III) it makes random movements; from each one that neither touches the
+    obstacle nor leaves the joint ranges, the rule connects the obstacle's place in the eye-centred
+    map with the movement's parameters (b1, b2). Seeing an obstacle then recalls a movement (Eq. 4).
+
+    In grasping (Sect. IV) it babbles with the object in the hand: the enclosure reflex closes the
+    hand, the arm moves to a random posture, and the rule connects the eye's posture with the arm's,
+    and the fovea's edges with the hand's. The sight of an object then recalls both.
 
     Args:
-        env: An id or an environment; its body is babbled on, its control decides how the agent
-            acts (see `MovementAgent`).
-        variant: "paper", or "conjunctive": obstacle and target in one map of pairs, and a readout
-            around the strongest neuron.
+        env: An id or an environment; it decides the task, its config is babbled with, and its
+            control decides how the agent acts.
+        variant: "paper", or in reaching "conjunctive": obstacle and target in one map of pairs, and
+            a readout around the strongest neuron.
+        rule: The learning rule: "covariance" (Eq. 7, unless given), "hebb" or "oja"; an instance of
+            the classes in `gym_babble.brain`; or a function of your own
+            (`gym_babble.brain.OwnRule`).
         seed: Seed of the babbling.
-        quasi_static: Babble without the muscles' lag: faster, and less like the paper.
+        quasi_static: In reaching, babble without the muscles' lag: faster, and less like the paper.
         threads: Threads that babble and learn; all processors if not given. Results do not depend
             on it.
-        config: Numbers of maps and rule that differ from the variant's, e.g.
-            `{"sigma": 1.0, "rule": {"eta": 0.5}}`; `agent.config` has them all.
+        brain: Numbers of maps and rule that differ from the variant's, e.g.
+            `{"sigma": 1.0, "rule": {"eta": 0.5}}`; `agent.brain` has them all.
 
     Raises:
-        ConfigError: An argument or a number of the config is not one there is.
+        ConfigError: An argument or a number of the brain is unknown or out of bounds.
     """
+
+    _core: _core.Learner
 
     def __init__(
         self,
         env: EnvLike = "BabbleReachPattern-v0",
         variant: str = "paper",
         *,
+        rule: RuleLike | None = None,
         seed: int = 0,
         quasi_static: bool = False,
         threads: int | None = None,
-        config: Mapping[str, Any] | None = None,
+        brain: Mapping[str, Any] | None = None,
     ) -> None:
         super().__init__(env)
         check_seed(seed)
-        numbers = json.loads(_core.Hebb.variant_config(variant))
-        merge(numbers, config or {}, "config")
-        self._hebb = _core.Hebb(json.dumps(numbers), seed, quasi_static, processors(threads))
+        task = self._interface.entry.name
+        numbers = json.loads(_core.brain_json(task, variant))
+        if rule is not None:
+            numbers["rule"] = rule_numbers(rule)
+        _merge(numbers, brain or {}, "brain")
+        self._rule: OwnRule | None = rule if is_own(rule) else None  # type: ignore[assignment]
+        self._threads = processors(threads)
+        babbling = {"quasi_static": True} if quasi_static else None
+        self._core = _core.Learner(
+            task, json.dumps(numbers), seed, json.dumps(babbling), self._threads
+        )
+        self._core.check(self._interface.task)
 
     def learn(
         self,
-        movements: int = 20_000,
+        babbles: int | None = None,
         *,
         progress_bar: bool = False,
         callback: Callable[[HebbBabbling], bool | None] | None = None,
+        callback_every: int | None = None,
     ) -> HebbBabbling:
-        """Babbles until so many more movements were legal, and learns from these.
+        """Babbles until so many more babbles could be learnt from, and learns from these.
 
-        Interrupted by Ctrl-C, the agent is as after the last 250 of them, and can go on from there.
+        Interrupted by Ctrl-C, the agent is as after its last call of `callback`, and can go on from
+        there. What it learns does not depend on `callback_every`.
 
         Args:
-            movements: Legal movements to learn from; the paper's 20,000.
+            babbles: Legal movements, or objects kept in the hand, to learn from; the paper's 20,000
+                or 1,000 if not given.
             progress_bar: Show a bar with the time left.
-            callback: Called with the agent about every 250 legal movements; False stops.
+            callback: Called with the agent as it learns; False stops.
+            callback_every: After how many babbles that were learnt from it is called, from 1 on;
+                250 in reaching and 50 in grasping if not given.
 
         Returns:
             The agent itself.
 
         Raises:
-            ConfigError: `movements` is negative.
-            ScenarioError: Hardly any movement is legal on this body.
+            ConfigError: An argument is not a whole number within its bounds, or the rule of your
+                own returns no Δw: the agent is then as after the last call of `callback`.
+            ScenarioError: Hardly any babble can be learnt from.
             BusyError: Another thread uses the agent.
         """
-        if movements < 0:
-            raise ConfigError(f"movements = {movements} is not at least 0")
-        chunks = [MOVEMENTS_A_CALL] * (movements // MOVEMENTS_A_CALL)
-        if movements % MOVEMENTS_A_CALL:
-            chunks.append(movements % MOVEMENTS_A_CALL)
-        with self._hebb:
-            for chunk in track(chunks, "babbling", total=movements, show=progress_bar):
-                self._hebb.learn(self._interface.task, chunk)
+        paper, every = PAPER[self._interface.entry.name]
+        babbles = paper if babbles is None else babbles
+        every = every if callback_every is None else callback_every
+        check_whole("babbles", babbles, 0, 100_000_000, "babbles")
+        check_whole("callback_every", every, 1, 100_000_000, "babbles")
+        rule = None if self._rule is None else teach(self._rule, self.brain["rule"])
+        chunks = [every] * (babbles // every)
+        if babbles % every:
+            chunks.append(babbles % every)
+        with self._core:
+            for chunk in track(chunks, "babbling", total=babbles, show=progress_bar):
+                self._core.learn(self._interface.task, chunk, rule)
                 if callback is not None and callback(self) is False:
                     break
         return self
 
-    def decide(self, senses: NDArray[np.float32]) -> NDArray[np.float64]:
-        """Parameters (b1, b2) of movements (n, 2), for flat senses (n, 11)."""
-        return self._hebb.decide(senses)
+    def decide(self, observation: Observation) -> NDArray[np.float64]:
+        """What the maps are read out as for one observation (k,), or for n of them (n, k).
 
-    def recall(self, senses: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Activity of the output map (21, 21), rows b2, columns b1, for flat senses (11,)."""
-        return self._hebb.recall(np.asarray(senses, np.float32).tolist())
+        In reaching, parameters (b1, b2) of a movement. In grasping, shoulder and elbow as shares of
+        their ranges, and equilibrium points of thumb and finger as the paper counts them,
+        EP = 90° − flexion [deg].
+
+        Args:
+            observation: As the environment gives it, of any `obs=`; or the percepts of `babble`.
+        """
+        senses = self._senses(observation)
+        decided = self._core.decide(np.atleast_2d(senses))
+        return decided if senses.ndim > 1 else decided[0]
+
+    def recall(self, observation: Observation) -> dict[str, NDArray[np.float32]]:
+        """Activities of the output maps (n, n) that one observation calls up, by name.
+
+        In reaching `movement`, whose columns are b1 and rows b2; in grasping `arm`, whose columns
+        are the shoulder and rows the elbow, and `hand`, thumb and finger.
+
+        Args:
+            observation: As the environment gives it, of any `obs=`.
+        """
+        senses = self._senses(observation)
+        if senses.ndim > 1:
+            raise ConfigError(f"recall takes one observation, got {len(senses)}")
+        return self._core.recall(senses)
 
     def save(self, path: str | Path) -> None:
-        """Writes the agent: weights as safetensors, all else as JSON in its metadata."""
-        Path(path).write_bytes(self._hebb.save(self._interface.task.config()))
+        """Writes the agent: weights as safetensors, all else as JSON in its metadata.
+
+        A rule of your own is not written: pass it to `load`.
+        """
+        Path(path).write_bytes(self._core.save(self._interface.task.config()))
 
     @classmethod
     def load(
-        cls, path: str | Path, env: EnvLike | None = None, *, threads: int | None = None
+        cls,
+        path: str | Path,
+        env: EnvLike | None = None,
+        *,
+        rule: OwnRule | None = None,
+        threads: int | None = None,
     ) -> HebbBabbling:
         """Reads an agent.
 
         Args:
             path: The file.
-            env: Environment to act in; by default `pattern` control on the body it learnt on.
+            env: Environment to act in; if not given, one of its task with the config that it
+                babbled with, in reaching with `pattern` control.
+            rule: The rule of your own that it learnt by, to learn on.
             threads: As for the class.
 
         Raises:
             FileNotFoundError: There is no such file.
             AgentFileError: The file is cut short, altered, or not an agent.
+            ConfigError: It cannot act in the environment.
         """
         try:
-            core, config = _core.Hebb.load(Path(path).read_bytes(), processors(threads))
+            core, config = _core.Learner.load(Path(path).read_bytes(), processors(threads))
         except ValueError as error:
             raise AgentFileError(f"{path}: {error}") from error
         agent = cls.__new__(cls)
-        MovementAgent.__init__(agent, _pattern_env(config) if env is None else env)
-        agent._hebb = core  # noqa: SLF001 - its own
+        agent._threads, agent._rule = processors(threads), rule  # noqa: SLF001 - its own
+        agent._core = core  # noqa: SLF001 - its own
+        if env is None:
+            task = core.task()
+            agent._interface = Interface(  # noqa: SLF001 - its own
+                task, config=json.loads(config), render_mode=None, options=ACTS_IN[task]
+            )
+        else:
+            agent._interface = interface_of(env)  # noqa: SLF001 - its own
+            if agent._interface.entry.name != core.task():  # noqa: SLF001 - its own
+                title = task_entry(core.task()).title
+                raise ConfigError(f"{env!r} is not a Babble environment for {title}")
+        core.check(agent._interface.task)  # noqa: SLF001 - its own
         return agent
 
     @property
-    def config(self) -> dict[str, Any]:
+    def brain(self) -> dict[str, Any]:
         """Numbers of maps and rule."""
-        return json.loads(self._hebb.config())  # type: ignore[no-any-return]
+        return json.loads(self._core.brain())  # type: ignore[no-any-return]
 
     @property
     def variant(self) -> str:
         """Which variant this is: "paper" or "conjunctive"."""
-        return str(self.config["variant"])
+        return str(self.brain.get("variant", "paper"))
 
     @property
     def weights(self) -> dict[str, NDArray[np.float32]]:
-        """Copies of the weights and running averages, by name.
+        """Copies of the weights and running averages, by name; assign such a dict to set them.
 
-        `weights` (output neurons, input neurons) is w_ji of Eq. 7; `a_bar` and `g_bar` are the
-        running averages of output and input. Neuron j of a map of n × n stands in column j % n
-        (first value) and row j // n (second value).
+        In reaching `weights` (output neurons, input neurons) is w_ji of Eq. 7, and `a_mean` and
+        `g_mean` are the running averages of output and input. In grasping there are `reach.weights`
+        (arm neurons, eye neurons), `grasp.weights` (hand neurons, fovea neurons), and so on. Neuron
+        j of a map of n × n stands in column j % n (first value) and row j // n (second value).
         """
-        return self._hebb.weights()
+        return self._core.weights()
+
+    @weights.setter
+    def weights(self, weights: Mapping[str, ArrayLike]) -> None:
+        known = self.weights
+        unknown = set(weights) - set(known)
+        if unknown:
+            raise ConfigError(f"weights: {sorted(unknown)} unknown; there are {', '.join(known)}")
+        parts = {name: np.asarray(weights.get(name, known[name]), np.float32) for name in known}
+        for i, prefix in enumerate(self._core.prefixes()):
+            names = (f"{prefix}weights", f"{prefix}a_mean", f"{prefix}g_mean")
+            self._core.set(i, *(parts[name] for name in names))
 
     @property
     def input_shape(self) -> tuple[int, ...]:
-        """Neurons along the axes of the input map."""
-        return tuple(self._hebb.input_shape())
+        """Neurons along the axes of the (first) input map."""
+        return tuple(self._core.input_shapes()[0])
 
     @property
-    def movements(self) -> int:
-        """Movements babbled, legal or not."""
-        return self._hebb.movements
+    def babbled(self) -> int:
+        """Babbles made, whether they could be learnt from or not."""
+        return self._core.counts()[1]
 
     @property
-    def legal_movements(self) -> int:
-        """Legal movements, which were learnt from."""
-        return self._hebb.legal
+    def learnt(self) -> int:
+        """Babbles learnt from: the legal movements, or the objects kept in the hand."""
+        return self._core.counts()[2]
 
     @property
-    def legal_rate(self) -> float:
-        """Share of the babbled movements that were legal; NaN before the first."""
-        return self.legal_movements / self.movements if self.movements else float("nan")
+    def learnt_rate(self) -> float:
+        """Share of the babbles that could be learnt from; NaN before the first."""
+        return self.learnt / self.babbled if self.babbled else float("nan")
+
+    @property
+    def seed(self) -> int:
+        """Seed of the babbling."""
+        return self._core.counts()[0]
+
+    def experiences(self) -> Experiences:
+        """The babbles that it has learnt from, in their order, made again: it keeps none."""
+        seed, babbled, _ = self._core.counts()
+        options = self._core.babbling()
+        made = experiences_of(self._interface, babbled, seed, options, self._threads)
+        return made[made.learnable]
+
+    @property
+    def steps_per_babble(self) -> int:
+        """Control steps that a babble takes."""
+        return _core.babble_steps(self._interface.task)
+
+    def __getstate__(self) -> dict[str, Any]:
+        saved = self._core.save(self._interface.task.config())
+        return {**super().__getstate__(), "_saved": saved}
+
+    def __setstate__(self, state: Mapping[str, Any]) -> None:
+        super().__setstate__({k: v for k, v in state.items() if k != "_saved"})
+        self._core, _ = _core.Learner.load(state["_saved"], self._threads)
 
 
-def _pattern_env(config: str) -> Any:
-    return BabbleReachEnv(control="pattern", reward="sparse", config=json.loads(config))
+def _merge(numbers: dict[str, Any], changes: Mapping[str, Any], path: str) -> None:
+    """Replaces numbers of a brain.
+
+    Raises:
+        ConfigError: A field is unknown.
+    """
+    for name, value in changes.items():
+        if name not in numbers:
+            raise ConfigError(f"{path}.{name}: unknown field; there are {', '.join(numbers)}")
+        if isinstance(numbers[name], dict) and hasattr(value, "items"):
+            _merge(numbers[name], value, f"{path}.{name}")
+        else:
+            numbers[name] = value

@@ -1,9 +1,11 @@
-"""Agents from the command line: by name, or from a file."""
+"""Agents by name, from a file, or of one's own by `module:Class`."""
 
 from __future__ import annotations
 
+import importlib
+import inspect
 import json
-import os
+import sys
 import zipfile
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,31 +14,22 @@ from typing import TYPE_CHECKING, Any
 import gymnasium
 from gymnasium import spaces
 
-from gym_babble.agents import (
-    GraspRandom,
-    GraspScripted,
-    HebbBabbling,
-    HebbGrasping,
-    Oracle,
-    RandomBabbling,
-    Scripted,
-)
-from gym_babble.envs.registry import ENVIRONMENTS
+from gym_babble.agents.base import predictor
+from gym_babble.agents.hebb import HebbBabbling
+from gym_babble.agents.reference import Oracle, Random, Scripted
+from gym_babble.envs.registry import environment
 from gym_babble.errors import AgentFileError, ConfigError, MissingExtraError
-from gym_babble.study.tasks import REACH, task_of
 
 if TYPE_CHECKING:
-    from gym_babble.agents.base import Agent
+    from gym_babble.agents.base import Agent, EnvLike
     from gym_babble.config import ConfigLike
 
-__all__ = ["REFERENCES", "LoadedAgent", "load_agent"]
+__all__ = ["REFERENCES", "LoadedAgent", "load_agent", "named_agent", "own_agent"]
 
 REFERENCES = ("random", "scripted", "oracle")
 PATTERN = "BabbleReachPattern-v0"
-GRASPING = "BabbleGrasp-v0"
-# Safetensors begins with its metadata, and the core writes what kind of agent it is as their key.
-GRASPING_KEY = b'"gym_babble.grasp"'
-KEY_WITHIN = 64
+# Where an agent from a file acts unless told, by its task.
+ACTS_IN = {"reach": PATTERN, "grasp": "BabbleGrasp-v0"}
 
 
 @dataclass(frozen=True)
@@ -49,58 +42,129 @@ class LoadedAgent:
     env_kwargs: dict[str, Any] = field(default_factory=dict)
 
 
-def load_agent(
-    name: str, *, env_id: str | None = None, config: ConfigLike | None = None, seed: int = 0
-) -> LoadedAgent:
-    """An agent by name, or from a file.
+def load_agent(path: str | Path, env: EnvLike | None = None) -> HebbBabbling:
+    """The agent in a file that `HebbBabbling.save` wrote, of either task.
 
     Args:
-        name: "random", "scripted", "oracle" (of reaching alone), a file that a Hebb agent's `save`
-            wrote, or a zip that stable-baselines3 wrote. The latter holds pickled Python: load only
-            those you trust.
+        path: The file.
+        env: Environment to act in; if not given, one of its task with the config that it babbled
+            with.
+
+    Raises:
+        FileNotFoundError: There is no such file.
+        AgentFileError: The file is cut short, altered, or not an agent.
+        ConfigError: It cannot act in the environment.
+    """
+    return HebbBabbling.load(path, env)
+
+
+def named_agent(
+    name: str, *, env_id: str | None = None, config: ConfigLike | None = None, seed: int = 0
+) -> LoadedAgent:
+    """An agent by name, from a file, or of one's own.
+
+    Args:
+        name: "random", "scripted" or "oracle"; a file that `HebbBabbling.save` wrote; a zip that
+            stable-baselines3 wrote, which holds pickled Python: load only those you trust; or
+            "module:Class", a class of your own, found from the current folder (see `own_agent`).
         env_id: Environment to act in; BabbleReachPattern-v0, or BabbleGrasp-v0 for an agent that
             has learnt to grasp, if not given, but a zip needs one.
-        config: Body and task; the one it learnt on, or "paper", if not given.
-        seed: Seed of the random agent.
+        config: Config of body and task; the one it learnt on, or "paper", if not given.
+        seed: Seed of an agent that takes one.
 
     Raises:
         FileNotFoundError: There is neither such a name nor such a file.
         AgentFileError: The file is not an agent.
-        ConfigError: There is no such environment or body, or the agent cannot act in it.
+        ConfigError: There is no such environment, config, module or class, or the agent cannot act.
     """
     if env_id is not None:
-        task_of(env_id)
+        environment(env_id)
     if name in REFERENCES:
         return _reference(name, env_id or PATTERN, "paper" if config is None else config, seed)
     path = Path(name)
+    if ":" in name and not path.exists():
+        env_id, config = env_id or PATTERN, "paper" if config is None else config
+        agent = own_agent(name, gymnasium.make(env_id, config=config), seed=seed)
+        return LoadedAgent(agent, env_id, config)
     if not path.is_file():
-        raise FileNotFoundError(f"{name}: no such file; agents by name are {', '.join(REFERENCES)}")
+        raise FileNotFoundError(
+            f"{name}: no such file; agents by name are {', '.join(REFERENCES)}, "
+            "and one of your own is module:Class"
+        )
     if zipfile.is_zipfile(path):
         return _stable_baselines(path, env_id, "paper" if config is None else config)
     return _hebb(path, env_id, config)
 
 
+def own_agent(name: str, env: EnvLike, *, seed: int = 0) -> Agent:
+    """An agent of a class of one's own.
+
+    Args:
+        name: "module:Class". The module is found as Python finds modules, or in the current folder.
+        env: Given to the class, if it takes an argument.
+        seed: Given to the class, if it takes an argument of this name.
+
+    Raises:
+        ConfigError: There is no such module or class, or it has no `predict(observation)`.
+    """
+    module_name, _, class_name = name.partition(":")
+    here = str(Path.cwd())
+    sys.path.insert(0, here)
+    try:
+        module = importlib.import_module(module_name)
+    except ModuleNotFoundError as error:
+        if error.name is None or not module_name.startswith(error.name):
+            raise
+        raise ConfigError(
+            f"{name}: there is no module {module_name!r}, neither installed nor in {here}"
+        ) from error
+    except ValueError as error:
+        raise ConfigError(f"{name} is not of the form module:Class") from error
+    finally:
+        sys.path.remove(here)
+    cls = getattr(module, class_name, None)
+    if not isinstance(cls, type):
+        classes = [key for key, value in vars(module).items() if isinstance(value, type)]
+        raise ConfigError(
+            f"{name}: module {module_name!r} has no class {class_name!r}; "
+            f"it has {', '.join(classes) or 'none'}"
+        )
+    agent = _made(cls, env, seed)
+    predictor(agent)
+    return agent  # type: ignore[no-any-return]
+
+
+def _made(cls: type, env: EnvLike, seed: int) -> Any:
+    if cls.__init__ is object.__init__:  # type: ignore[misc]
+        return cls()
+    parameters = inspect.signature(cls).parameters
+    seeded = {"seed": seed} if "seed" in parameters else {}
+    takes_env = any(
+        p.kind in {p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD, p.VAR_POSITIONAL}
+        and p.name != "seed"
+        for p in parameters.values()
+    )
+    return cls(env, **seeded) if takes_env else cls(**seeded)
+
+
 def _reference(name: str, env_id: str, config: ConfigLike, seed: int) -> LoadedAgent:
     env = gymnasium.make(env_id, config=config)
-    of_reaching = task_of(env_id) == REACH
     agent: Agent
     if name == "random":
-        agent = RandomBabbling(env, seed=seed) if of_reaching else GraspRandom(env, seed=seed)
+        agent = Random(env, seed=seed)
     elif name == "scripted":
-        agent = Scripted(env) if of_reaching else GraspScripted(env)
+        agent = Scripted(env)
     else:
-        agent = Oracle(env, threads=os.cpu_count() or 1)
+        agent = Oracle(env, threads=None)
     return LoadedAgent(agent, env_id, config)
 
 
 def _hebb(path: Path, env_id: str | None, config: ConfigLike | None) -> LoadedAgent:
-    grasps = GRASPING_KEY in path.read_bytes()[:KEY_WITHIN]
-    kind: type[HebbBabbling | HebbGrasping] = HebbGrasping if grasps else HebbBabbling
-    env_id = env_id or (GRASPING if grasps else PATTERN)
-    agent = kind.load(path)
+    agent = load_agent(path)
+    env_id = env_id or ACTS_IN[agent.interface.entry.name]
     if config is None:
         config = json.loads(agent.interface.task.config())
-    return LoadedAgent(kind.load(path, gymnasium.make(env_id, config=config)), env_id, config)
+    return LoadedAgent(load_agent(path, gymnasium.make(env_id, config=config)), env_id, config)
 
 
 def _stable_baselines(path: Path, env_id: str | None, config: ConfigLike) -> LoadedAgent:
@@ -117,8 +181,7 @@ def _stable_baselines(path: Path, env_id: str | None, config: ConfigLike) -> Loa
         model = algorithm.load(path, device="cpu")
     except Exception as error:  # Unpickling can raise anything.
         raise AgentFileError(f"{path}: {error}") from error
-    registered = next(row.options["obs"] for row in ENVIRONMENTS if row.id == env_id)
-    for obs in (registered, "senses", "flat"):
+    for obs in (environment(env_id).presets.get("obs", "senses"), "flat"):
         space = gymnasium.make(env_id, obs=obs, config=config).observation_space
         if _shapes(space) == _shapes(model.observation_space):
             return LoadedAgent(model, env_id, config, {"obs": obs})

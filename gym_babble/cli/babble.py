@@ -40,13 +40,11 @@ def babble(
     settings: dict[str, Any] = {"config": config, "seed": seed}
     if task == "reach":
         agent = learn_reaching(variant, movements, seed, config, quasi_static=quasi_static)
-        trials, accepted = agent.movements, agent.legal_movements
-        agent.save(file)
         settings = {"variant": variant, **settings, "quasi_static": quasi_static}
     else:
-        grasping_agent = learn_grasping(babbles, seed, config)
-        trials, accepted = grasping_agent.babbles, grasping_agent.kept
-        grasping_agent.save(file)
+        agent = learn_grasping(babbles, seed, config)
+    agent.save(file)
+    trials, accepted = agent.babbled, agent.learnt
     names, rate = TASKS[task], accepted / trials
     if as_json:
         counts = {names.trials: trials, f"{names.accepted}_{names.trials}": accepted}

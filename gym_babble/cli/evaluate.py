@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from gym_babble.agents.loading import load_agent
+from gym_babble.agents.loading import named_agent
 from gym_babble.cli.arguments import AgentName, AsJson, Cases, EnvId, OwnConfig, Seed
 from gym_babble.cli.output import print_json, print_results
 from gym_babble.study import evaluation
@@ -28,7 +28,7 @@ def evaluate(
     as_json: AsJson = False,
 ) -> None:
     """Test an agent on its task's cases: Table I, or objects on the palm's side."""
-    loaded = load_agent(agent, env_id=env_id, config=config, seed=seed)
+    loaded = named_agent(agent, env_id=env_id, config=config, seed=seed)
     task = task_of(loaded.env_id)
     result = evaluation.evaluate(
         loaded.agent,

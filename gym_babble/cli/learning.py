@@ -2,7 +2,7 @@
 
 import gymnasium
 
-from gym_babble.agents import HebbBabbling, HebbGrasping
+from gym_babble.agents import HebbBabbling
 
 __all__ = ["learn_grasping", "learn_reaching"]
 
@@ -16,7 +16,7 @@ def learn_reaching(
     return agent.learn(movements, progress_bar=True)
 
 
-def learn_grasping(babbles: int, seed: int, config: str) -> HebbGrasping:
+def learn_grasping(babbles: int, seed: int, config: str) -> HebbBabbling:
     """A Hebb agent of grasping that has learnt from babbles."""
-    agent = HebbGrasping(gymnasium.make("BabbleGrasp-v0", config=config), seed=seed)
+    agent = HebbBabbling(gymnasium.make("BabbleGrasp-v0", config=config), seed=seed)
     return agent.learn(babbles, progress_bar=True)

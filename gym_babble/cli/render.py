@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from gym_babble.agents.loading import load_agent
+from gym_babble.agents.loading import named_agent
 from gym_babble.cli.arguments import AgentName, EnvId, OwnConfig, Seed, one_of
 from gym_babble.cli.output import check_folder_of, name_files, say
 from gym_babble.envs.registry import TASKS
@@ -35,7 +35,7 @@ def render(
 ) -> None:
     """Film an episode of an agent: a contact sheet, and frames, GIF or MP4."""
     check_folder_of(folder)
-    loaded = load_agent(agent, env_id=env_id, config=config, seed=seed)
+    loaded = named_agent(agent, env_id=env_id, config=config, seed=seed)
     film = record(loaded, seed=seed, camera=camera, size=size)
     say(f"{film.outcome} after {len(film.frames) - 1} control steps")
     name_files(save_film(film, folder, kind))

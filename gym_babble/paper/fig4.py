@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from gym_babble import _core
+from gym_babble.agents.base import predictor
 from gym_babble.config import config_json
 from gym_babble.envs import BabbleReachEnv
 from gym_babble.errors import ScenarioError
@@ -49,13 +50,13 @@ def trajectories(
 ) -> list[Trajectory]:
     """The movements of an agent in `pattern` control. Impossible cases are skipped."""
     env = BabbleReachEnv("rgb_array", control="pattern", reward="sparse", config=config)
-    made = []
+    predict, made = predictor(agent), []
     for case in cases:
         try:
             observation, _ = env.reset(options={"scenario": case})
         except ScenarioError:
             continue
-        action, _ = agent.predict(observation, deterministic=True)
+        action, _ = predict(observation, None, np.array([True]), True)  # noqa: FBT003
         *_, info = env.step(action)
         b1 = 0.5 + 0.5 * float(action[0])
         made.append(Trajectory(case, env.trajectory, b1, info["outcome"]))

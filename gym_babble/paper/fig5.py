@@ -71,7 +71,7 @@ def weight_sets(agent: HebbBabbling) -> WeightSets:
     activity = np.maximum(np.tanh(patterns), 0.0)  # Eq. 4 for one active input neuron.
     b1 = (activity * np.linspace(0.0, 1.0, side)).sum((2, 3))
     b1 = b1 / np.maximum(activity.sum((2, 3)), 1e-9)
-    taught = np.abs(patterns).max((2, 3)) > 0.5 * agent.config["rule"]["w_max"]
+    taught = np.abs(patterns).max((2, 3)) > 0.5 * agent.brain["rule"]["w_max"]
     left, right = taught & (b1 > 0.5), taught & (b1 <= 0.5)
     if not (left.any() and right.any()):
         raise ConfigError("the agent has not learnt both curves yet: babble more movements")

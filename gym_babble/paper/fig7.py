@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from gym_babble.agents.base import predictor
 from gym_babble.envs import BabbleGraspEnv
 from gym_babble.progress import track
 from gym_babble.viz.style import FAINT, INK, LEFT, RED, row_of_axes, styled
@@ -51,15 +52,15 @@ def trajectories(
 ) -> list[PalmTrajectory]:
     """The palm's trajectories in tests of an agent."""
     env = BabbleGraspEnv("rgb_array", config=config, max_episode_steps=TEST_STEPS)
-    made = []
+    predict, made = predictor(agent), []
     parts = track([1] * len(cases), "testing", total=len(cases), show=progress_bar)
     for case, _ in zip(cases, parts, strict=True):
         observation, info = env.reset(seed=0, options={"scenario": case})
-        state, ended = None, False
+        state, start, ended = None, True, False
         while not ended:
-            action, state = agent.predict(observation, state, None, True)  # noqa: FBT003
+            action, state = predict(observation, state, np.array([start]), True)  # noqa: FBT003
             observation, _, terminated, truncated, info = env.step(action)
-            ended = terminated or truncated
+            start, ended = False, terminated or truncated
         made.append(PalmTrajectory(case, env.trajectory, info["reach"], info["held"]))
     return made
 

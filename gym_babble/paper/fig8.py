@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from gym_babble.agents import HebbGrasping
+    from gym_babble.agents import HebbBabbling
 
 __all__ = ["draw"]
 
 
 @styled
-def draw(agent: HebbGrasping, eye: tuple[float, float] = (0.45, 0.85)) -> Figure:
+def draw(agent: HebbBabbling, eye: tuple[float, float] = (0.45, 0.85)) -> Figure:
     """Draws the arm's map for an object, weights of an eye neuron, and of two hand neurons.
 
     Top left: activation potential of the arm's map when the eye looks at an object. Top right:
@@ -35,9 +35,9 @@ def draw(agent: HebbGrasping, eye: tuple[float, float] = (0.45, 0.85)) -> Figure
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(8.6, 7.2), layout="constrained")
-    weights, side = agent.weights, agent.config["neurons"]
+    weights, side = agent.weights, agent.brain["neurons"]
     reach = weights["reach.weights"]
-    potential = (reach @ _tuning(eye, side, agent.config["sigma"])).reshape(side, side)
+    potential = (reach @ _tuning(eye, side, agent.brain["sigma"])).reshape(side, side)
     grid = np.arange(1, side + 1)
     surface: Any = figure.add_subplot(2, 2, 1, projection="3d")
     surface.plot_surface(*np.meshgrid(grid, grid), potential, cmap="RdBu_r", lw=0.2, ec=FAINT)
@@ -46,10 +46,11 @@ def draw(agent: HebbGrasping, eye: tuple[float, float] = (0.45, 0.85)) -> Figure
     outward = reach[:, row * side + column].reshape(side, side)
     title = f"From eye neuron ({column + 1}, {row + 1})"
     _weights(figure, 2, outward, title=title, axes=("shoulder", "elbow"))
-    left = agent.babbled
-    diameters = np.unique(left["diameter"])
+    babbled = agent.experiences()
+    sizes = babbled.case["diameter"][:, 0]
+    diameters = np.unique(sizes)
     for place, diameter in ((3, diameters[0]), (4, diameters[-1])):
-        hand = left["hand"][left["diameter"] == diameter].mean(axis=0)
+        hand = babbled.actions["hand"][sizes == diameter].mean(axis=0)
         thumb, finger = (round(np.clip(ep / 90.0, 0.0, 1.0) * (side - 1)) for ep in hand.tolist())
         inward = weights["grasp.weights"][finger * side + thumb].reshape(21, 21)[::-1]
         title = f"To the hand for {100 * diameter:g} cm: EP {hand[0]:.0f}°, {hand[1]:.0f}°"

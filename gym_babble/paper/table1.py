@@ -107,7 +107,7 @@ def table1(
         drawn = scenarios("table1", cases, seed, config=config)
         bar = progress_bar and control != "pattern"  # Pattern tests take a moment.
         tests.append(evaluate(agent, env_id, drawn, config=config, progress_bar=bar))
-        legal_rates.append(agent.legal_rate)
+        legal_rates.append(agent.learnt_rate)
     settings = {
         "config": str(config),
         "variant": variant,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import gymnasium
 import numpy as np
 
-from gym_babble.agents import HebbGrasping
+from gym_babble.agents import HebbBabbling
 from gym_babble.config import Config, config_json
 from gym_babble.envs.interface import check_whole
 from gym_babble.errors import ConfigError
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from gym_babble.agents import Experiences
     from gym_babble.agents.base import Agent
     from gym_babble.config import ConfigLike
     from gym_babble.study.scenarios import GraspProtocol, GraspScenario
@@ -180,11 +181,12 @@ def table2(
     sizes = {d: _Collected() for d in table_diameters(config)}
     kept, made = 0, 0
     for seed in range(seeds):
-        agent = HebbGrasping(gymnasium.make("BabbleGrasp-v0", config=config), seed=seed)
+        agent = HebbBabbling(gymnasium.make("BabbleGrasp-v0", config=config), seed=seed)
         agent.learn(babbles, progress_bar=progress_bar)
-        kept, made = kept + agent.kept, made + agent.babbles
+        kept, made = kept + agent.learnt, made + agent.babbled
+        experiences = agent.experiences()
         for diameter, collected in sizes.items():
-            collected.add_babbles(agent, diameter)
+            collected.add_babbles(experiences, diameter)
         for protocol in PROTOCOLS:
             n = None if protocol == "table2" else cases
             drawn = scenarios(protocol, n, seed, config=config)
@@ -215,9 +217,9 @@ class _Collected:
         default_factory=lambda: {protocol: {} for protocol in PROTOCOLS}
     )
 
-    def add_babbles(self, agent: HebbGrasping, diameter: float) -> None:
-        babbled = agent.babbled
-        self.babbled.append(babbled["hand"][babbled["diameter"] == diameter])
+    def add_babbles(self, kept: Experiences, diameter: float) -> None:
+        of_size = kept.case["diameter"][:, 0] == np.float32(diameter)
+        self.babbled.append(kept.actions["hand"][of_size])
 
     def result(self, diameter: float) -> SizeResult:
         return SizeResult(
@@ -254,10 +256,10 @@ def _play(
 
 
 def recalled_hands(
-    agent: HebbGrasping, cases: Sequence[GraspScenario], config: ConfigLike = "paper"
+    agent: HebbBabbling, cases: Sequence[GraspScenario], config: ConfigLike = "paper"
 ) -> NDArray[np.float64]:
     """Equilibrium points of thumb and finger that each case recalls (n, 2) [deg]."""
     envs = gymnasium.make_vec("BabbleGrasp-v0", num_envs=len(cases), config=config)
     senses, _ = envs.reset(seed=0, options={"scenario": list(cases)})
     envs.close()
-    return agent.decide(senses["eye"], senses["fovea"])[:, 2:]
+    return agent.decide(senses)[:, 2:]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING
 
-from gym_babble.agents import HebbBabbling, HebbGrasping
+from gym_babble.agents import HebbBabbling
 from gym_babble.paper import fig2, fig4, fig5, fig7, fig8, sight
 from gym_babble.report.html import figure_html, svg_source
 from gym_babble.study.comparison import TrainedResult
@@ -94,7 +94,7 @@ def hands_section(comparison: Comparison) -> str:
     """Trajectories, activation and weights of seed 0's Hebb agent of grasping."""
     result = comparison.result("hebb-paper")
     agent = result.trained[0].agent if isinstance(result, TrainedResult) else None
-    if not isinstance(agent, HebbGrasping):
+    if not isinstance(agent, HebbBabbling):
         return ""
     config = comparison.settings.config
     cases = scenarios("fig7", config=config)[::FIG7_EVERY]

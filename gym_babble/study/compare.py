@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from gym_babble.errors import ConfigError, MissingExtraError, StudyError
 from gym_babble.study.comparison import Comparison, Result, StoredResult, TrainedResult
-from gym_babble.study.contenders import CONTENDERS, Contender, Settings
+from gym_babble.study.contenders import CONTENDERS, Contender, Settings, own_contender
 from gym_babble.study.evaluation import evaluate
 from gym_babble.study.learning import CurvePoint, Learning
 from gym_babble.study.rates import counted, tally
@@ -42,7 +42,8 @@ def compare(
     """Trains and tests contenders one after the other.
 
     Args:
-        agents: Keys of the task's `CONTENDERS`; by default all that are not `opt_in`.
+        agents: Keys of the task's `CONTENDERS`, and "module:Class" for agents of your own; by
+            default all contenders that are not `opt_in`.
         settings: Settings of the comparison.
         log: Called with a line of text before each contender.
 
@@ -79,10 +80,14 @@ def _chosen(keys: Sequence[str] | None, task: Task) -> list[Contender]:
     known = {contender.key: contender for contender in CONTENDERS[task.name]}
     if keys is None:
         return [contender for contender in known.values() if not contender.opt_in]
-    unknown = [key for key in keys if key not in known]
+    unknown = [key for key in keys if key not in known and ":" not in key]
     if unknown or not keys:
-        raise ConfigError(f"agents = {list(keys)} is not a selection of {', '.join(known)}")
-    return [known[key] for key in dict.fromkeys(keys)]
+        raise ConfigError(
+            f"agents = {list(keys)} is not a selection of {', '.join(known)}, or module:Class"
+        )
+    return [
+        known[key] if key in known else own_contender(key, task.name) for key in dict.fromkeys(keys)
+    ]
 
 
 def _run(

@@ -2,23 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import gymnasium
 
-from gym_babble.agents import (
-    GraspRandom,
-    GraspScripted,
-    HebbBabbling,
-    HebbGrasping,
-    Oracle,
-    RandomBabbling,
-    Scripted,
-)
-from gym_babble.agents.grasping import BABBLE_S
-from gym_babble.config import Config, config_json
+from gym_babble.agents import HebbBabbling, Oracle, Random, Scripted
+from gym_babble.agents.loading import own_agent
 from gym_babble.study.learning import VALIDATION_CASES, CurvePoint, CurveRecorder, Trained
 
 if TYPE_CHECKING:
@@ -27,7 +17,7 @@ if TYPE_CHECKING:
     from gym_babble.agents.base import Agent
     from gym_babble.config import ConfigLike
 
-__all__ = ["CONTENDERS", "Contender", "Settings"]
+__all__ = ["CONTENDERS", "Contender", "Settings", "own_contender"]
 
 PATTERN = "BabbleReachPattern-v0"
 
@@ -78,37 +68,21 @@ class Contender:
     """Takes part only if named."""
 
 
-def _hebb(variant: str) -> Callable[[Settings, int], Trained]:
+def _hebb(env_id: str, variant: str = "paper") -> Callable[[Settings, int], Trained]:
     def train(settings: Settings, seed: int) -> Trained:
-        agent = HebbBabbling(gymnasium.make(PATTERN, config=settings.config), variant, seed=seed)
-        steps = _config(settings).movement_steps
-        recorder = CurveRecorder(
-            PATTERN, settings.config, {*LEGAL_MOVEMENTS, settings.movements}, steps
-        )
+        agent = HebbBabbling(gymnasium.make(env_id, config=settings.config), variant, seed=seed)
+        reaching = env_id == PATTERN
+        babbles = settings.movements if reaching else settings.babbles
+        marks = LEGAL_MOVEMENTS if reaching else KEPT_BABBLES
+        recorder = CurveRecorder(env_id, settings.config, {*marks, babbles}, agent.steps_per_babble)
         agent.learn(
-            settings.movements,
+            babbles,
             progress_bar=settings.progress_bar,
-            callback=lambda agent: recorder.note(agent, agent.movements, agent.legal_movements),
+            callback=lambda agent: recorder.note(agent, agent.babbled, agent.learnt),
         )
-        return recorder.trained(agent, agent.movements, agent.legal_movements)
+        return recorder.trained(agent, agent.babbled, agent.learnt)
 
     return train
-
-
-def _hebb_grasping(settings: Settings, seed: int) -> Trained:
-    agent = HebbGrasping(gymnasium.make(GRASPING, config=settings.config), seed=seed)
-    steps = round(BABBLE_S / _config(settings).grasp.control_period_s)
-    recorder = CurveRecorder(GRASPING, settings.config, {*KEPT_BABBLES, settings.babbles}, steps)
-    agent.learn(
-        settings.babbles,
-        progress_bar=settings.progress_bar,
-        callback=lambda agent: recorder.note(agent, agent.babbles, agent.kept),
-    )
-    return recorder.trained(agent, agent.babbles, agent.kept)
-
-
-def _config(settings: Settings) -> Config:
-    return Config.from_json(config_json(settings.config))
 
 
 def _ppo(preset: str) -> Callable[[Settings, int], Trained]:
@@ -153,8 +127,10 @@ def _without_learning(
 
 CONTENDERS = {
     "reach": (
-        Contender("hebb-paper", "Hebb paper", "obstacle only", _hebb("paper")),
-        Contender("hebb-conjunctive", "Hebb conjunctive", "obstacle × eye", _hebb("conjunctive")),
+        Contender("hebb-paper", "Hebb paper", "obstacle only", _hebb(PATTERN)),
+        Contender(
+            "hebb-conjunctive", "Hebb conjunctive", "obstacle × eye", _hebb(PATTERN, "conjunctive")
+        ),
         Contender("ppo-obstacle", "PPO pattern", "obstacle only", _ppo("pattern_obstacle")),
         Contender("ppo-pattern", "PPO pattern", "all senses", _ppo("pattern")),
         Contender(
@@ -164,7 +140,7 @@ CONTENDERS = {
             "random",
             "Random",
             "babbles",
-            _without_learning(lambda env, seed: RandomBabbling(env, seed=seed)),
+            _without_learning(lambda env, seed: Random(env, seed=seed)),
         ),
         Contender(
             "scripted",
@@ -176,12 +152,12 @@ CONTENDERS = {
             "oracle",
             "Oracle",
             "tries 99",
-            _without_learning(lambda env, _: Oracle(env, threads=os.cpu_count() or 1)),
+            _without_learning(lambda env, _: Oracle(env, threads=None)),
             slow_test=True,
         ),
     ),
     "grasp": (
-        Contender("hebb-paper", "Hebb paper", "eye, fovea", _hebb_grasping, slow_test=True),
+        Contender("hebb-paper", "Hebb paper", "eye, fovea", _hebb(GRASPING), slow_test=True),
         Contender("ppo-stored", "PPO delta_posture", "stored study", None),
         Contender(
             "ppo-posture",
@@ -195,16 +171,24 @@ CONTENDERS = {
             "scripted",
             "Scripted",
             "knows geometry",
-            _without_learning(lambda env, _: GraspScripted(env), GRASPING),
+            _without_learning(lambda env, _: Scripted(env), GRASPING),
             slow_test=True,
         ),
         Contender(
             "random",
             "Random",
             "any action",
-            _without_learning(lambda env, seed: GraspRandom(env, seed=seed), GRASPING),
+            _without_learning(lambda env, seed: Random(env, seed=seed), GRASPING),
             slow_test=True,
         ),
     ),
 }
 """The agents of each task, in the order of the table."""
+
+
+def own_contender(name: str, task: str) -> Contender:
+    """An agent of a user's own, by `module:Class`, which does not learn here."""
+    env_id = PATTERN if task == "reach" else GRASPING
+    make = _without_learning(lambda env, seed: own_agent(name, env, seed=seed), env_id)
+    module, _, cls = name.partition(":")
+    return Contender(name, cls, module, make, slow_test=True)

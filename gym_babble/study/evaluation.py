@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 import gymnasium
 import numpy as np
 
+from gym_babble.agents.base import predictor
+from gym_babble.agents.loading import named_agent
 from gym_babble.errors import ConfigError
 from gym_babble.progress import track
 from gym_babble.study.scenarios import scenarios
@@ -76,7 +78,7 @@ def wilson(count: int, n: int, z: float = 1.959964) -> tuple[float, float]:
 
 
 def evaluate(
-    agent: Agent,
+    agent: Agent | str,
     env_id: str = "BabbleReachPattern-v0",
     cases: Sequence[Scenario | GraspScenario] | None = None,
     *,
@@ -88,7 +90,9 @@ def evaluate(
     """Plays one episode of each case.
 
     Args:
-        agent: Any object with stable-baselines3's `predict`.
+        agent: Any object with stable-baselines3's `predict`, or with a `predict(observation)` that
+            returns an action; or the name of one: "random", "scripted", "oracle", a file, or
+            "module:Class".
         env_id: Id of the environment.
         cases: Cases from `scenarios`. By default 1,000 test cases of seed 0: of Table I for
             reaching, of the region "palm_side" for grasping.
@@ -103,6 +107,9 @@ def evaluate(
     """
     if cases is None:
         cases = scenarios(task_of(env_id).protocol, 1000, config=config)
+    if isinstance(agent, str):
+        loaded = named_agent(agent, env_id=env_id, config=config)
+        agent, env_kwargs = loaded.agent, {**loaded.env_kwargs, **env_kwargs}
     if not cases:
         raise ConfigError("cases is empty: it must have at least one")
     groups = [cases[i : i + ENVS] for i in range(0, len(cases), ENVS)]
@@ -120,6 +127,7 @@ def _play(
 ) -> Evaluation:
     """Plays one episode in each environment. Ended environments continue, but are ignored."""
     n = len(cases)
+    predict = predictor(agent)
     observation, _ = envs.reset(seed=0, options={"scenario": list(cases)})
     state: Any = None
     starts = np.ones(n, np.bool_)
@@ -129,7 +137,7 @@ def _play(
     names = envs.get_attr("interface")[0].spec.facts
     facts = {name: np.zeros(n, np.bool_) for name in names}
     while running.any():
-        actions, state = agent.predict(observation, state, starts, deterministic)
+        actions, state = predict(observation, state, starts, deterministic)
         observation, rewards, terminated, truncated, infos = envs.step(actions)
         ended = terminated | truncated
         steps[running] += 1

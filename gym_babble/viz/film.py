@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import gymnasium
 import numpy as np
 
+from gym_babble.agents.base import predictor
 from gym_babble.errors import MissingExtraError
 
 if TYPE_CHECKING:
@@ -62,12 +63,11 @@ def record(
         config=loaded.config,
         **loaded.env_kwargs,
     )
+    predict = predictor(loaded.agent)
     observation, info = env.reset(seed=seed, options=options)
     frames, state, start, running = list(env.render()), None, True, True
     while running:
-        action, state = loaded.agent.predict(
-            observation, state, np.array([start]), deterministic=True
-        )
+        action, state = predict(observation, state, np.array([start]), True)  # noqa: FBT003
         observation, _, terminated, truncated, info = env.step(action)
         frames += env.render()
         start, running = False, not (terminated or truncated)

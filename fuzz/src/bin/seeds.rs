@@ -5,10 +5,10 @@ use std::error::Error;
 use std::path::Path;
 use std::sync::Arc;
 
-use babble_agent::grasp::{GraspBabbling, GraspHebb, GraspHebbConfig, Metadata};
-use babble_agent::{HebbConfig, Variant, store};
+use babble_agent::{
+    GraspBrain, GraspNetwork, Learner, Network, ReachBabbling, ReachBrain, ReachNetwork, Variant,
+};
 use babble_env::tasks::grasp::GraspRequest;
-use babble_env::tasks::reach::movement::Fidelity;
 use babble_env::{Autoreset, Batch, Config, EnvError, Task};
 use babble_fuzz::snapshots::{body_of, grasping, reaching};
 use safetensors::SafeTensors;
@@ -78,35 +78,32 @@ fn played<T: Task>(mut env: Batch<T>, steps: usize, action: f32) -> Result<Vec<u
 
 fn agents() -> Result<()> {
     for variant in [Variant::Paper, Variant::Conjunctive] {
-        let config = HebbConfig {
+        let brain = ReachBrain {
             output_neurons: 2,
             obstacle_neurons: 2,
             target_neurons: 2,
-            ..HebbConfig::variant(variant)
+            ..ReachBrain::variant(variant)
         };
-        let body = Config::profile("paper")?;
-        let metadata = store::Metadata::new(config, body, 1, Fidelity::Full, 9, 2);
-        let json = serde_json::to_string(&metadata)?;
-        put("agent_file", &variant.to_string(), &with_numbers(&json))?;
+        let learner = Learner::<ReachNetwork>::new(brain, 1, ReachBabbling::default())?;
+        agent(&variant.to_string(), &learner, "paper")?;
     }
-    let config = GraspHebbConfig {
+    let brain = GraspBrain {
         neurons: 2,
-        ..GraspHebbConfig::default()
+        ..GraspBrain::default()
     };
-    let hebb = GraspHebb::new(config)?;
-    let file = babble_agent::grasp::save(&hebb, &GraspBabbling::new(1), Config::profile("icub")?)?;
+    agent("grasp", &Learner::<GraspNetwork>::new(brain, 1, ())?, "icub")
+}
+
+/// What is known of an agent beside its weights.
+fn agent<N: Network>(name: &str, learner: &Learner<N>, profile: &str) -> Result<()> {
+    let file = learner.save(Config::profile(profile)?)?;
     let (_, header) = SafeTensors::read_metadata(&file)?;
-    let text = header
-        .metadata()
-        .as_ref()
-        .and_then(|all| all.get("gym_babble.grasp"));
+    let text = header.metadata().as_ref().and_then(|all| all.get(N::KEY));
     let (_, fields) = text
         .ok_or("no metadata")?
         .split_once(',')
         .ok_or("no fields")?;
-    let json = format!("{{{fields}");
-    serde_json::from_str::<Metadata>(&json)?;
-    put("agent_file", "grasp", &with_numbers(&json))
+    put("agent_file", name, &with_numbers(&format!("{{{fields}")))
 }
 
 /// Two neurons a side, no tensor too long, all weights 0.

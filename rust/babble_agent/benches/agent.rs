@@ -2,8 +2,8 @@
 
 use std::hint::black_box;
 
-use babble_agent::reference::{oracle, scripted};
-use babble_agent::{Babbling, Hebb, HebbConfig, Variant};
+use babble_agent::reach::reference::{oracle, scripted};
+use babble_agent::{Babbling, Network, ReachBabbling, ReachBrain, ReachNetwork, Variant};
 use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
 use babble_env::tasks::reach::protocol;
 use babble_env::{Config, Executor, Outcome, Purpose, ReachOptions, ReachTask};
@@ -22,15 +22,13 @@ fn babbling(c: &mut Criterion) {
     let mut group = c.benchmark_group("babble");
     group.throughput(Throughput::Elements(MOVEMENTS as u64));
     group.sample_size(10);
-    for (name, fidelity) in [
-        ("full", Fidelity::Full),
-        ("quasi-static", Fidelity::QuasiStatic),
-    ] {
+    for (name, quasi_static) in [("full", false), ("quasi-static", true)] {
+        let options = ReachBabbling { quasi_static };
         for threads in [1, 2] {
             let mut pool = Executor::new(threads).unwrap();
             group.bench_function(format!("{name}, threads {threads}"), |b| {
                 b.iter(|| {
-                    let mut babbling = Babbling::new(black_box(0), fidelity);
+                    let mut babbling = Babbling::new(black_box(0), options);
                     babbling.experience(&task, MOVEMENTS, &mut pool).unwrap()
                 });
             });
@@ -42,11 +40,11 @@ fn babbling(c: &mut Criterion) {
 fn hebb(c: &mut Criterion) {
     let task = task();
     let mut pool = Executor::new(1).unwrap();
-    let experiences = Babbling::new(0, Fidelity::QuasiStatic)
+    let experiences = Babbling::new(0, ReachBabbling { quasi_static: true })
         .experience(&task, MOVEMENTS, &mut pool)
         .unwrap();
     for variant in [Variant::Paper, Variant::Conjunctive] {
-        let mut hebb = Hebb::new(HebbConfig::variant(variant)).unwrap();
+        let mut hebb = ReachNetwork::new(ReachBrain::variant(variant)).unwrap();
         let mut group = c.benchmark_group(format!("hebb, {variant}"));
         group.sample_size(20);
         group.throughput(Throughput::Elements(MOVEMENTS as u64));

@@ -1,139 +1,238 @@
-//! Random movements (motor babbling), of which the legal ones are experienced.
+//! Motor babbling: random movements, one sequence for each seed.
 
-use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
-use babble_env::{EnvError, Executor, Purpose, ReachCase, ReachTask, Stop, Stream};
-use rayon::prelude::*;
+use std::fmt;
+use std::marker::PhantomData;
+
+use babble_env::{EnvError, Executor, Outcome, Purpose, Stream, Task};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use crate::error::AgentError;
 
-/// Movements that are babbled together; half of them on average are made in vain at the end.
-const CHUNK: u64 = 64;
-/// With fewer legal movements than one in this many, nothing can be learnt.
-const RAREST: u64 = 100_000;
+/// Most babbles that are made together.
+const CHUNK: usize = 64;
 
-/// What a legal movement leaves behind: percepts as the environment's senses give them, and what
-/// was done.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Experience {
-    /// Pan and tilt on the target, over their ranges.
-    pub eye: [f32; 2],
-    /// Angles of the obstacle in the camera frame \[rad\].
-    pub obstacle: [f32; 2],
-    /// Parameters (b1, b2) of the movement.
-    pub b: [f32; 2],
+/// Numbers of all experiences that belong together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// Name, as the environment's senses have it where it is one of them.
+    pub name: &'static str,
+    /// What it tells of.
+    pub kind: ColumnKind,
+    /// Numbers of each experience.
+    pub width: usize,
+    /// The numbers, one experience after the other.
+    pub values: Vec<f32>,
 }
 
-/// A sequence of babbled movements. Movement k depends on the seed and k alone.
-#[derive(Debug, Clone)]
-pub struct Babbling {
+/// What a column of experiences tells of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ColumnKind {
+    /// What was seen.
+    Percept,
+    /// What was done: parameters of a movement, or a posture.
+    Action,
+    /// What the case was.
+    Case,
+}
+
+impl Column {
+    /// A column of N numbers of each experience.
+    pub(crate) fn of<E, const N: usize>(
+        name: &'static str,
+        kind: ColumnKind,
+        all: &[E],
+        numbers: impl Fn(&E) -> [f32; N],
+    ) -> Self {
+        Self {
+            name,
+            kind,
+            width: N,
+            values: all.iter().flat_map(numbers).collect(),
+        }
+    }
+}
+
+/// A task that an agent can babble in.
+pub trait Babble: Task {
+    /// How babbles are simulated.
+    type Options: Copy
+        + Default
+        + PartialEq
+        + fmt::Debug
+        + Send
+        + Sync
+        + Serialize
+        + DeserializeOwned;
+    /// What a babble leaves behind.
+    type Experience: Clone + PartialEq + fmt::Debug + Send + Sync;
+
+    /// How many babbles it takes about until one can be learnt from: so many are made together.
+    const TRIES: usize;
+    /// When of so many babbles not even one can be learnt from, nothing can.
+    const RAREST: u64;
+
+    /// One babble. One that cannot be learnt from is None, unless `all` are asked for.
+    ///
+    /// # Errors
+    /// An error of the task.
+    fn babble(
+        &self,
+        options: Self::Options,
+        stream: &mut Stream,
+        all: bool,
+    ) -> Result<Option<Self::Experience>, EnvError>;
+
+    /// Control steps that a babble takes.
+    fn babble_steps(&self) -> usize;
+
+    /// Whether an experience can be learnt from.
+    fn is_learnable(experience: &Self::Experience) -> bool;
+
+    /// How a babble ended.
+    fn outcome(experience: &Self::Experience) -> Outcome;
+
+    /// Experiences column by column.
+    fn columns(experiences: &[Self::Experience]) -> Vec<Column>;
+}
+
+/// A sequence of babbles. Babble k depends on the seed and k alone.
+#[derive(Debug)]
+pub struct Babbling<T: Babble> {
     seed: u64,
-    fidelity: Fidelity,
-    movements: u64,
-    legal: u64,
+    options: T::Options,
+    babbled: u64,
+    learnt: u64,
+    task: PhantomData<fn(&T)>,
 }
 
-impl Babbling {
+// Derived, it would ask for a task that can be copied.
+impl<T: Babble> Clone for Babbling<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T: Babble> Copy for Babbling<T> {}
+
+impl<T: Babble> Babbling<T> {
     /// The sequence of `seed` from its beginning.
     #[must_use]
-    pub const fn new(seed: u64, fidelity: Fidelity) -> Self {
-        Self::resume(seed, fidelity, 0, 0)
+    pub const fn new(seed: u64, options: T::Options) -> Self {
+        Self::resume(seed, options, 0, 0)
     }
 
-    /// The sequence of `seed` after `movements` movements, of which `legal` were legal.
+    /// The sequence of `seed` after `babbled` babbles, of which `learnt` were learnt from.
     #[must_use]
-    pub const fn resume(seed: u64, fidelity: Fidelity, movements: u64, legal: u64) -> Self {
+    pub const fn resume(seed: u64, options: T::Options, babbled: u64, learnt: u64) -> Self {
         Self {
             seed,
-            fidelity,
-            movements,
-            legal,
+            options,
+            babbled,
+            learnt,
+            task: PhantomData,
         }
     }
 
-    /// Movements babbled so far.
+    /// Its seed.
     #[must_use]
-    pub const fn movements(&self) -> u64 {
-        self.movements
+    pub const fn seed(&self) -> u64 {
+        self.seed
     }
 
-    /// How many of them were legal.
+    /// How its babbles are simulated.
     #[must_use]
-    pub const fn legal(&self) -> u64 {
-        self.legal
+    pub const fn options(&self) -> T::Options {
+        self.options
     }
 
-    /// Babbles until `n` more movements were legal.
+    /// Babbles made so far.
+    #[must_use]
+    pub const fn babbled(&self) -> u64 {
+        self.babbled
+    }
+
+    /// How many of them could be learnt from: the legal movements, or the babbles in which the hand
+    /// kept the object.
+    #[must_use]
+    pub const fn learnt(&self) -> u64 {
+        self.learnt
+    }
+
+    /// Babbles until `n` more can be learnt from, and returns these.
     ///
     /// # Errors
-    /// [`AgentError::NothingLegal`] when legal movements are too rare, or an error of the task or the
-    /// pool; the sequence is then where it was.
+    /// [`AgentError::NothingToLearn`] when such babbles are too rare, or an error of the task or the
+    /// executor; the sequence is then where it was.
     pub fn experience(
         &mut self,
-        task: &ReachTask,
+        task: &T,
         n: usize,
-        pool: &mut Executor,
-    ) -> Result<Vec<Experience>, AgentError> {
-        let mut ahead = self.clone();
-        let found = pool.run_until(|stop| ahead.babble(task, n, stop))??;
+        executor: &mut Executor,
+    ) -> Result<Vec<T::Experience>, AgentError> {
+        let mut ahead = *self;
+        let found = ahead.search(task, n, executor)?;
         *self = ahead;
         Ok(found)
     }
 
-    fn babble(
+    fn search(
         &mut self,
-        task: &ReachTask,
+        task: &T,
         n: usize,
-        stop: &Stop,
-    ) -> Result<Vec<Experience>, AgentError> {
+        executor: &mut Executor,
+    ) -> Result<Vec<T::Experience>, AgentError> {
         let mut found = Vec::with_capacity(n);
-        let (seed, fidelity) = (self.seed, self.fidelity);
         while found.len() < n {
-            stop.check()?;
-            let first = self.movements;
-            let tried: Vec<_> = (first..first + CHUNK)
-                .into_par_iter()
-                .map(|k| movement(task, fidelity, Stream::new(Purpose::Learning, seed, k)))
-                .collect();
-            for result in tried {
+            let count = CHUNK.min((n - found.len()).saturating_mul(T::TRIES));
+            for experience in self.some(task, count, false, executor)? {
                 if found.len() == n {
                     break;
                 }
-                self.movements += 1;
-                if let Some(experience) = result? {
-                    self.legal += 1;
+                self.babbled += 1;
+                if let Some(experience) = experience {
+                    self.learnt += 1;
                     found.push(experience);
                 }
             }
-            if self.movements > RAREST * (self.legal + 1) {
-                return Err(AgentError::NothingLegal {
-                    legal: self.legal,
-                    movements: self.movements,
+            if self.babbled > T::RAREST * (self.learnt + 1) {
+                return Err(AgentError::NothingToLearn {
+                    learnt: self.learnt,
+                    babbled: self.babbled,
                 });
             }
         }
         Ok(found)
     }
+
+    /// The next `n` babbles, none of which is counted.
+    fn some(
+        &self,
+        task: &T,
+        n: usize,
+        all: bool,
+        executor: &mut Executor,
+    ) -> Result<Vec<Option<T::Experience>>, EnvError> {
+        executor.map(0..n, |i| {
+            let mut stream = Stream::new(Purpose::Learning, self.seed, self.babbled + i as u64);
+            task.babble(self.options, &mut stream, all)
+        })
+    }
 }
 
-/// One babbled movement: a random case, b1 uniform in its range and b2 = 1 − b1.
-fn movement(
-    task: &ReachTask,
-    fidelity: Fidelity,
-    mut stream: Stream,
-) -> Result<Option<Experience>, EnvError> {
-    let case = ReachCase::draw_geometry(task, &mut stream)?;
-    let [low, high] = task.config.reach.b_range;
-    let b1 = stream.uniform(low, high);
-    let b = [b1, 1.0 - b1];
-    if !MovementPath::new(task, &case, b)?.is_legal(task, &case, fidelity) {
-        return Ok(None);
-    }
-    let gaze = task.foveate(&case)?;
-    let camera = task.eye.camera(gaze);
-    let single = |x: [f64; 2]| x.map(|x| x as f32);
-    Ok(Some(Experience {
-        eye: single(task.eye.normalised(gaze)),
-        obstacle: single(ReachTask::obstacle_angles(&camera, case.obstacle.as_ref())),
-        b: single(b),
-    }))
+/// The first `n` babbles of a seed, whether they can be learnt from or not. Babble k is that of
+/// [`Babbling`].
+///
+/// # Errors
+/// An error of the task or the executor.
+pub fn babble<T: Babble>(
+    task: &T,
+    n: usize,
+    seed: u64,
+    options: T::Options,
+    executor: &mut Executor,
+) -> Result<Vec<T::Experience>, AgentError> {
+    let babbling = Babbling::<T>::new(seed, options);
+    let made = babbling.some(task, n, true, executor)?;
+    Ok(made.into_iter().flatten().collect())
 }

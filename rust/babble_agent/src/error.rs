@@ -19,23 +19,22 @@ pub enum AgentError {
         /// What is wrong with it.
         problem: String,
     },
-    /// No legal movement was found.
+    /// Hardly any babble can be learnt from.
     #[error(
-        "only {legal} of {movements} babbled movements were legal; nothing can be learnt on this body"
+        "only {learnt} of {babbled} babbles can be learnt from (legal movements, or objects kept in \
+         the hand); nothing can be learnt on this body"
     )]
-    NothingLegal {
-        /// Legal movements found.
-        legal: u64,
-        /// Movements babbled.
-        movements: u64,
-    },
-    /// The hand kept hardly any object.
-    #[error("the hand kept the object in only {kept} of {babbles} babbles; nothing can be learnt")]
-    NothingHeld {
-        /// Objects kept.
-        kept: u64,
+    NothingToLearn {
+        /// Babbles that can be learnt from.
+        learnt: u64,
         /// Babbles made.
-        babbles: u64,
+        babbled: u64,
+    },
+    /// A rule of the user's own failed.
+    #[error("rule: {problem}")]
+    Rule {
+        /// What is wrong with it.
+        problem: String,
     },
     /// The maps or their weights.
     #[error(transparent)]

@@ -2,13 +2,22 @@
 #![warn(clippy::disallowed_methods, clippy::disallowed_types)]
 
 pub mod babbling;
+pub mod erased;
 mod error;
 pub mod grasp;
-pub mod hebb;
-pub mod reference;
-pub mod store;
+pub mod learner;
+pub mod network;
+pub mod policy;
+pub mod reach;
+pub mod rule;
 mod tensors;
 
-pub use babbling::{Babbling, Experience};
+pub use babbling::{Babble, Babbling, babble};
+pub use erased::{AnyLearner, REFERENCES, reference};
 pub use error::AgentError;
-pub use hebb::{Hebb, HebbConfig, Variant};
+pub use grasp::{GraspBrain, GraspNetwork};
+pub use learner::Learner;
+pub use network::{Activities, Network};
+pub use policy::{Plan, Policy, Random, predict};
+pub use reach::{ReachBabbling, ReachBrain, ReachNetwork, Variant};
+pub use rule::Rule;

@@ -5,7 +5,6 @@ use babble_brain::Association;
 use safetensors::tensor::{Dtype, TensorView};
 use safetensors::{SafeTensors, serialize};
 use serde::Serialize;
-use serde::de::DeserializeOwned;
 use xxhash_rust::xxh3::Xxh3;
 
 use crate::error::AgentError;
@@ -22,12 +21,12 @@ pub(crate) struct Tensor<'a> {
 
 /// Names of an association's tensors: weights, averages of the output and of the input.
 pub(crate) fn names(prefix: &str) -> [String; 3] {
-    ["weights", "a_bar", "g_bar"].map(|name| format!("{prefix}{name}"))
+    ["weights", "a_mean", "g_mean"].map(|name| format!("{prefix}{name}"))
 }
 
 /// The weights and averages of an association.
 pub(crate) fn of<'a>(prefix: &str, w: &'a Association) -> [Tensor<'a>; 3] {
-    let [weights, a_bar, g_bar] = names(prefix);
+    let [weights, a_mean, g_mean] = names(prefix);
     let tensor = |name, shape, values| Tensor {
         name,
         shape,
@@ -35,8 +34,8 @@ pub(crate) fn of<'a>(prefix: &str, w: &'a Association) -> [Tensor<'a>; 3] {
     };
     [
         tensor(weights, vec![w.n_out(), w.n_in()], w.weights()),
-        tensor(a_bar, vec![w.n_out()], w.a_bar()),
-        tensor(g_bar, vec![w.n_in()], w.g_bar()),
+        tensor(a_mean, vec![w.n_out()], w.a_mean()),
+        tensor(g_mean, vec![w.n_in()], w.g_mean()),
     ]
 }
 
@@ -65,15 +64,25 @@ pub(crate) fn write(
     serialize(views, Some(metadata)).map_err(|e| file(&e))
 }
 
+/// What the texts in a file's header are called.
+///
+/// # Errors
+/// [`AgentError::File`] for bytes that are no safetensors file.
+pub(crate) fn keys(bytes: &[u8]) -> Result<Vec<String>, AgentError> {
+    let (_, header) = SafeTensors::read_metadata(bytes).map_err(|e| file(&e))?;
+    let texts = header.metadata().as_ref();
+    Ok(texts.map_or_else(Vec::new, |texts| texts.keys().cloned().collect()))
+}
+
 /// The JSON and the tensors of that `names` in a file's bytes.
 ///
 /// # Errors
 /// [`AgentError::File`] for bytes that are cut short, altered, or of another kind.
-pub(crate) fn read<M: DeserializeOwned>(
+pub(crate) fn read(
     key: &str,
     bytes: &[u8],
     names: &[String],
-) -> Result<(M, Vec<Vec<f32>>), AgentError> {
+) -> Result<(String, Vec<Vec<f32>>), AgentError> {
     let tensors = SafeTensors::deserialize(bytes).map_err(|e| file(&e))?;
     let (_, header) = SafeTensors::read_metadata(bytes).map_err(|e| file(&e))?;
     let text = header
@@ -85,20 +94,7 @@ pub(crate) fn read<M: DeserializeOwned>(
         })?;
     let json = without_checksum(text, &tensors, names)?;
     let values = names.iter().map(|name| values(&tensors, name));
-    Ok((
-        serde_json::from_str(&json).map_err(|e| file(&e))?,
-        values.collect::<Result<_, _>>()?,
-    ))
-}
-
-/// Checks that a file is of the version that this code writes.
-pub(crate) fn check_version(found: u32, known: u32) -> Result<(), AgentError> {
-    if found == known {
-        return Ok(());
-    }
-    Err(AgentError::File {
-        problem: format!("version {found} is not {known}"),
-    })
+    Ok((json, values.collect::<Result<_, _>>()?))
 }
 
 fn checksum<'a>(json: &str, data: impl IntoIterator<Item = &'a [u8]>) -> String {
@@ -149,7 +145,8 @@ fn values(tensors: &SafeTensors<'_>, name: &str) -> Result<Vec<f32>, AgentError>
     Ok(tensor.data().chunks_exact(4).map(four).collect())
 }
 
-fn file(error: &impl ToString) -> AgentError {
+/// An error of a file, from any other.
+pub(crate) fn file(error: &impl ToString) -> AgentError {
     AgentError::File {
         problem: error.to_string(),
     }

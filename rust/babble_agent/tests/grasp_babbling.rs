@@ -2,12 +2,12 @@
 
 use std::time::Instant;
 
-use babble_agent::AgentError;
+use babble_agent::grasp::Experience;
 use babble_agent::grasp::holding::trials;
-use babble_agent::grasp::{Experience, GraspBabbling, GraspHebb, GraspHebbConfig};
+use babble_agent::{AgentError, Babbling, GraspBrain, GraspNetwork, Network, babble};
 use babble_brain::{MapConfig, PopulationMap};
 use babble_env::tasks::grasp::{FOVEA_NEURONS, GraspCase};
-use babble_env::{Autoreset, Batch, Config, EnvError, Executor, GraspOptions, GraspTask};
+use babble_env::{Autoreset, Batch, Config, EnvError, Executor, GraspOptions, GraspTask, Outcome};
 
 const DIAMETERS: [f64; 2] = [0.024, 0.06];
 
@@ -23,17 +23,17 @@ fn pool(threads: usize) -> Executor {
     Executor::new(threads).unwrap()
 }
 
-fn babble(seed: u64, portions: &[usize], threads: usize) -> (Vec<Experience>, u64) {
+fn experience(seed: u64, portions: &[usize], threads: usize) -> (Vec<Experience>, u64) {
     let (task, mut pool) = (task(), pool(threads));
-    let mut babbling = GraspBabbling::new(seed);
+    let mut babbling = Babbling::new(seed, ());
     let mut all = Vec::new();
     for &n in portions {
         let found = babbling.experience(&task, n, &mut pool).unwrap();
         assert_eq!(found.len(), n);
         all.extend(found);
-        assert_eq!(babbling.kept(), all.len() as u64);
+        assert_eq!(babbling.learnt(), all.len() as u64);
     }
-    (all, babbling.babbles())
+    (all, babbling.babbled())
 }
 
 /// The k-th object that is kept depends on the seed alone: any number of threads, any portions give
@@ -41,11 +41,11 @@ fn babble(seed: u64, portions: &[usize], threads: usize) -> (Vec<Experience>, u6
 /// the end of a portion, a stream shared between threads, and a hand that is not opened again.
 #[test]
 fn babbling_is_one_sequence() {
-    let whole = babble(4, &[24], 1);
+    let whole = experience(4, &[24], 1);
     for (portions, threads) in [(&[24][..], 2), (&[24][..], 8), (&[1, 17, 6][..], 2)] {
-        assert_eq!(babble(4, portions, threads), whole);
+        assert_eq!(experience(4, portions, threads), whole);
     }
-    assert!(babble(5, &[6], 2).0 != whole.0[..6]);
+    assert!(experience(5, &[6], 2).0 != whole.0[..6]);
 }
 
 /// A sequence taken up again where it stopped goes on as if it had not. Catches the last babble made
@@ -53,16 +53,33 @@ fn babbling_is_one_sequence() {
 #[test]
 fn babbling_resumes() {
     let (task, mut pool) = (task(), pool(2));
-    let mut whole = GraspBabbling::new(4);
+    let mut whole = Babbling::new(4, ());
     let first = whole.experience(&task, 8, &mut pool).unwrap();
-    let mut resumed = GraspBabbling::resume(4, whole.babbles(), whole.kept());
+    let mut resumed = Babbling::resume(4, (), whole.babbled(), whole.learnt());
     let rest = whole.experience(&task, 8, &mut pool).unwrap();
     assert_eq!(resumed.experience(&task, 8, &mut pool).unwrap(), rest);
     assert_eq!(
-        (resumed.babbles(), resumed.kept(), resumed.seed()),
-        (whole.babbles(), whole.kept(), 4)
+        (resumed.babbled(), resumed.learnt(), resumed.seed()),
+        (whole.babbled(), whole.learnt(), 4)
     );
     assert_ne!(first, rest);
+}
+
+/// Babbles of a seed, kept or not, are those that learning takes its experiences from, in their order.
+/// A hand that stays open loses them all, and says so.
+#[test]
+fn babbles_hold_the_experiences() {
+    let (kept, babbled) = experience(4, &[6], 2);
+    let all = babble(&task(), babbled as usize, 4, (), &mut pool(2)).unwrap();
+    let found: Vec<_> = all.iter().filter(|one| one.is_kept()).cloned().collect();
+    assert_eq!(found, kept);
+    let open = task_with(r#"{"body": {"grip": {"reflex_deg": [0, 0]}}}"#);
+    let lost = babble(&open, 3, 4, (), &mut pool(2)).unwrap();
+    assert_eq!(lost.len(), 3);
+    assert!(
+        lost.iter()
+            .all(|one| one.outcome == Outcome::Lost && !one.is_kept())
+    );
 }
 
 /// An open hand closes around the object that is put before its palm, which is of either size; the
@@ -73,7 +90,7 @@ fn babbling_resumes() {
 #[test]
 fn kept_objects_are_in_the_hand() {
     let task = task();
-    let (experiences, babbles) = babble(1, &[40], 2);
+    let (experiences, babbles) = experience(1, &[40], 2);
     assert!(babbles <= 60, "{babbles} babbles for 40 objects");
     for diameter in DIAMETERS {
         let of_size = experiences.iter().filter(|one| one.diameter == diameter);
@@ -85,8 +102,10 @@ fn kept_objects_are_in_the_hand() {
         arm,
         hand,
         diameter,
+        outcome,
     } in &experiences
     {
+        assert_eq!(*outcome, Outcome::Success);
         let shares = eye.iter().chain(arm).chain(&**fovea);
         assert!(shares.clone().all(|x| (0.0..=1.0).contains(x)));
         assert!(fovea.iter().any(|&edge| edge > 0.05));
@@ -113,9 +132,9 @@ fn kept_objects_are_in_the_hand() {
 #[test]
 fn interrupted_babbling_is_where_it_was() {
     let task = task();
-    let (whole, babbles) = babble(4, &[3], 2);
+    let (whole, babbles) = experience(4, &[3], 2);
     for threads in [1, 2] {
-        let mut babbling = GraspBabbling::new(4);
+        let mut babbling = Babbling::new(4, ());
         let mut impatient = pool(threads).interrupted_by(|| true);
         let began = Instant::now();
         let result = babbling.experience(&task, 10_000, &mut impatient);
@@ -126,7 +145,7 @@ fn interrupted_babbling_is_where_it_was() {
         println!("{threads} threads: interrupted twice in {seconds:.3} s");
         assert!(seconds < 2.0, "{seconds} s");
         let rest = babbling.experience(&task, 3, &mut pool(threads)).unwrap();
-        assert_eq!((rest, babbling.babbles()), (whole.clone(), babbles));
+        assert_eq!((rest, babbling.babbled()), (whole.clone(), babbles));
     }
 }
 
@@ -139,12 +158,12 @@ fn nothing_held_is_an_error() {
         r#"{"body": {"grip": {"reflex_deg": [0, 0]}},
             "grasp": {"palm_reach_m": 0.01, "control_period_s": 0.02, "physics_steps": 1}}"#,
     );
-    let result = GraspBabbling::new(0).experience(&task, 64, &mut pool(2));
+    let result = Babbling::new(0, ()).experience(&task, 64, &mut pool(2));
     match result.map(|found| found.len()) {
-        Err(AgentError::NothingHeld { kept, babbles }) => {
+        Err(AgentError::NothingToLearn { learnt, babbled }) => {
             assert!(
-                kept == 0 && (1000..1100).contains(&babbles),
-                "{kept} of {babbles}"
+                learnt == 0 && (1000..1100).contains(&babbled),
+                "{learnt} of {babbled}"
             );
         }
         other => panic!("{other:?}"),
@@ -184,8 +203,8 @@ fn the_reflex_holds() {
     }
 }
 
-fn learnt(experiences: &[Experience], portions: &[usize], threads: usize) -> GraspHebb {
-    let mut hebb = GraspHebb::new(GraspHebbConfig::default()).unwrap();
+fn learnt(experiences: &[Experience], portions: &[usize], threads: usize) -> GraspNetwork {
+    let mut hebb = GraspNetwork::new(GraspBrain::default()).unwrap();
     let mut rest = experiences;
     for &n in portions {
         let (now, later) = rest.split_at(n);
@@ -209,6 +228,7 @@ fn made_up(n: usize) -> Vec<Experience> {
             arm: [share(), share()],
             hand: [90.0 * share(), 90.0 * share()],
             diameter: 0.03,
+            outcome: Outcome::Success,
         });
     }
     all
@@ -229,29 +249,23 @@ fn learning_goes_on() {
 
 /// A map of the paper's size over [0, `high`]².
 fn map(high: f64) -> PopulationMap {
-    PopulationMap::new(&MapConfig {
-        neurons: [21; 2],
-        low: [0.0; 2],
-        high: [high; 2],
-        sigma: 0.7,
-    })
-    .unwrap()
+    PopulationMap::new(&MapConfig::square(21, 0.0, high, 0.7)).unwrap()
 }
 
 /// Eq. 7 written down: weights of connections from `g` to `a`.
 fn eq7(pairs: &[(Vec<f32>, Vec<f32>)]) -> Vec<f64> {
-    let (mut w, mut g_bar, mut a_bar) = (vec![0.0; 441 * 441], [0.0; 441], [0.0; 441]);
+    let (mut w, mut g_mean, mut a_mean) = (vec![0.0; 441 * 441], [0.0; 441], [0.0; 441]);
     for (g, a) in pairs {
         for j in 0..441 {
             for i in 0..441 {
                 let old: f64 = w[441 * j + i];
-                let (da, dg) = (f64::from(a[j]) - a_bar[j], f64::from(g[i]) - g_bar[i]);
+                let (da, dg) = (f64::from(a[j]) - a_mean[j], f64::from(g[i]) - g_mean[i]);
                 w[441 * j + i] = old + da * dg * (0.2 - old.abs());
             }
         }
         for k in 0..441 {
-            a_bar[k] = 0.2 * a_bar[k] + 0.8 * f64::from(a[k]);
-            g_bar[k] = 0.2 * g_bar[k] + 0.8 * f64::from(g[k]);
+            a_mean[k] = 0.2 * a_mean[k] + 0.8 * f64::from(a[k]);
+            g_mean[k] = 0.2 * g_mean[k] + 0.8 * f64::from(g[k]);
         }
     }
     w
@@ -265,7 +279,7 @@ fn learning_is_eq_7() {
     let hebb = learnt(&experiences, &[20], 1);
     let encode = |map: &PopulationMap, x: [f32; 2]| {
         let mut activity = vec![0.0; 441];
-        map.encode(x.map(f64::from), &mut activity);
+        map.encode(&x.map(f64::from), &mut activity).unwrap();
         activity
     };
     let (unit, hand) = (map(1.0), map(90.0));
@@ -308,13 +322,13 @@ fn sight_recalls_arm_and_hand() {
             (case, *eye, rest[..FOVEA_NEURONS].to_vec())
         })
         .collect();
-    let mut hebb = GraspHebb::new(GraspHebbConfig::default()).unwrap();
+    let mut hebb = GraspNetwork::new(GraspBrain::default()).unwrap();
     let nothing = hebb.decide(seen[0].1, &seen[0].2).unwrap();
     assert_eq!((nothing.arm, nothing.hand), ([0.5; 2], [45.0; 2]));
 
-    let mut babbling = GraspBabbling::new(0);
+    let mut babbling = Babbling::<GraspTask>::new(0, ());
     let experiences = babbling.experience(&task, 200, &mut pool(2)).unwrap();
-    assert!(babbling.babbles() < 220, "{} babbles", babbling.babbles());
+    assert!(babbling.babbled() < 220, "{} babbles", babbling.babbled());
     hebb.learn(&experiences).unwrap();
     let mut fingers = Vec::new();
     for diameter in DIAMETERS {
@@ -352,38 +366,38 @@ fn sight_recalls_arm_and_hand() {
 /// Numbers of the maps out of bounds are named; percepts that are no activities are refused.
 #[test]
 fn bad_configs_and_percepts_are_named() {
-    let base = GraspHebbConfig::default();
+    let base = GraspBrain::default();
     let cases = [
         (
-            GraspHebbConfig {
+            GraspBrain {
                 neurons: 1,
                 ..base.clone()
             },
             "neurons",
         ),
         (
-            GraspHebbConfig {
+            GraspBrain {
                 neurons: 102,
                 ..base.clone()
             },
             "neurons",
         ),
         (
-            GraspHebbConfig {
+            GraspBrain {
                 sigma: 0.0,
                 ..base.clone()
             },
             "sigma",
         ),
         (
-            GraspHebbConfig {
+            GraspBrain {
                 squeeze_deg: f64::NAN,
                 ..base.clone()
             },
             "squeeze_deg",
         ),
         (
-            GraspHebbConfig {
+            GraspBrain {
                 squeeze_deg: -1.0,
                 ..base.clone()
             },
@@ -391,10 +405,10 @@ fn bad_configs_and_percepts_are_named() {
         ),
     ];
     for (config, field) in cases {
-        let error = GraspHebb::new(config).unwrap_err().to_string();
+        let error = GraspNetwork::new(config).unwrap_err().to_string();
         assert!(error.contains(field), "{error}");
     }
-    let mut hebb = GraspHebb::new(base).unwrap();
+    let mut hebb = GraspNetwork::new(base).unwrap();
     assert!(hebb.recall_hand(&[f32::NAN; 441]).is_err());
     assert!(hebb.recall_hand(&[0.5; 440]).is_err());
     let nan = hebb.decide([f32::NAN; 2], &[0.0; 441]);

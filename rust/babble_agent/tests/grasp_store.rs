@@ -1,27 +1,31 @@
 //! Agents of grasping as files.
 
-use babble_agent::grasp::{Experience, GraspBabbling, GraspHebb, GraspHebbConfig, load, save};
-use babble_agent::{AgentError, Babbling, Hebb, HebbConfig, Variant, store};
-use babble_env::tasks::reach::movement::Fidelity;
-use babble_env::{Config, Executor, GraspOptions, GraspTask};
+use babble_agent::grasp::Experience;
+use babble_agent::{
+    AgentError, GraspBrain, GraspNetwork, Learner, Network, ReachBabbling, ReachBrain,
+    ReachNetwork, Variant,
+};
+use babble_env::{Config, Executor, GraspOptions, GraspTask, Outcome};
 
-/// A small agent that has learnt a little, and its file.
-fn agent() -> (GraspHebb, GraspBabbling, Config, Vec<u8>) {
+/// A small agent that has learnt a little, its task, and its file.
+fn agent() -> (Learner<GraspNetwork>, GraspTask, Vec<u8>) {
     let config = Config::from_json(r#"{"profile": "icub", "grasp": {"palm_reach_m": 0.061}}"#);
     let task = GraspTask::new(config.unwrap(), GraspOptions::default()).unwrap();
-    let mut babbling = GraspBabbling::new(u64::MAX);
-    let experiences = babbling
-        .experience(&task, 6, &mut Executor::new(2).unwrap())
-        .unwrap();
-    let mut hebb = GraspHebb::new(GraspHebbConfig {
+    let brain = GraspBrain {
         neurons: 3,
         squeeze_deg: 12.5,
-        ..GraspHebbConfig::default()
-    })
-    .unwrap();
-    hebb.learn(&experiences).unwrap();
-    let bytes = save(&hebb, &babbling, task.config.clone()).unwrap();
-    (hebb, babbling, task.config, bytes)
+        ..GraspBrain::default()
+    };
+    let mut learner = Learner::new(brain, u64::MAX, ()).unwrap();
+    learner
+        .learn(&task, 6, &mut Executor::new(2).unwrap())
+        .unwrap();
+    let bytes = learner.save(task.config.clone()).unwrap();
+    (learner, task, bytes)
+}
+
+fn load(bytes: &[u8]) -> Result<(Learner<GraspNetwork>, Config), AgentError> {
+    Learner::load(bytes)
 }
 
 fn refused(bytes: &[u8]) -> String {
@@ -29,7 +33,7 @@ fn refused(bytes: &[u8]) -> String {
         Err(AgentError::File { problem }) => problem,
         other => panic!(
             "expected a refusal, got {:?}",
-            other.map(|(.., config)| config)
+            other.map(|(_, config)| config)
         ),
     }
 }
@@ -39,43 +43,47 @@ fn refused(bytes: &[u8]) -> String {
 /// number that goes through decimal text.
 #[test]
 fn round_trip_keeps_every_bit() {
-    let (mut hebb, babbling, config, bytes) = agent();
-    let (mut loaded, resumed, read) = load(&bytes).unwrap();
-    assert_eq!(read, config);
-    let counts = |babbling: &GraspBabbling| (babbling.seed(), babbling.babbles(), babbling.kept());
-    assert_eq!(counts(&resumed), counts(&babbling));
-    assert_eq!(loaded.config(), hebb.config());
-    assert_eq!(
-        (loaded.reach(), loaded.grasp()),
-        (hebb.reach(), hebb.grasp())
-    );
-    assert_eq!(save(&loaded, &resumed, read.clone()).unwrap(), bytes);
+    let (mut learner, task, bytes) = agent();
+    let (mut loaded, config) = load(&bytes).unwrap();
+    assert_eq!(config, task.config);
+    let counts = |learner: &Learner<GraspNetwork>| {
+        let babbling = &learner.babbling;
+        (babbling.seed(), babbling.babbled(), babbling.learnt())
+    };
+    assert_eq!(counts(&loaded), counts(&learner));
+    let (ours, theirs) = (&mut learner.network, &mut loaded.network);
+    assert_eq!(theirs.config(), ours.config());
+    assert_eq!(theirs.associations(), ours.associations());
     let fovea = Box::new(std::array::from_fn(|i| (i % 7) as f32 / 7.0));
     let eye = [0.4, 0.6];
-    assert_eq!(loaded.decide(eye, &*fovea), hebb.decide(eye, &*fovea));
+    assert_eq!(theirs.decide(eye, &*fovea), ours.decide(eye, &*fovea));
     let more = [Experience {
         eye,
         fovea,
         arm: [0.1, 0.9],
         hand: [40.0, 20.0],
         diameter: 0.03,
+        outcome: Outcome::Success,
     }];
-    hebb.learn(&more).unwrap();
-    loaded.learn(&more).unwrap();
-    let again = |hebb: &GraspHebb| save(hebb, &resumed, read.clone()).unwrap();
-    assert_eq!(again(&loaded), again(&hebb));
+    ours.learn(&more).unwrap();
+    theirs.learn(&more).unwrap();
+    let again = |learner: &Learner<GraspNetwork>| learner.save(config.clone()).unwrap();
+    assert_eq!(again(&loaded), again(&learner));
     assert_ne!(again(&loaded), bytes);
 }
 
 /// A loaded agent babbles on where the saved one stopped.
 #[test]
 fn babbling_goes_on_from_a_file() {
-    let (_, mut babbling, config, bytes) = agent();
-    let (_, mut resumed, _) = load(&bytes).unwrap();
-    let task = GraspTask::new(config, GraspOptions::default()).unwrap();
+    let (mut learner, task, bytes) = agent();
+    let (mut loaded, _) = load(&bytes).unwrap();
     let mut pool = Executor::new(2).unwrap();
-    let next = babbling.experience(&task, 3, &mut pool).unwrap();
-    assert_eq!(resumed.experience(&task, 3, &mut pool).unwrap(), next);
+    learner.learn(&task, 3, &mut pool).unwrap();
+    loaded.learn(&task, 3, &mut pool).unwrap();
+    assert_eq!(
+        loaded.network.associations(),
+        learner.network.associations()
+    );
 }
 
 /// Cut short, or with more at the end: refused. Catches a length that is trusted.
@@ -106,42 +114,41 @@ fn altered_files_are_refused() {
 fn foreign_files_are_refused() {
     refused(b"");
     refused(b"PK\x03\x04 a zip archive");
-    let (.., config, bytes) = agent();
-    let numbers = HebbConfig {
+    let (_, task, bytes) = agent();
+    let brain = ReachBrain {
         output_neurons: 5,
         obstacle_neurons: 4,
         target_neurons: 3,
-        ..HebbConfig::variant(Variant::Conjunctive)
+        ..ReachBrain::variant(Variant::Conjunctive)
     };
-    let reaching = Hebb::new(numbers.clone()).unwrap();
-    let fidelity = Fidelity::QuasiStatic;
-    let babbling = Babbling::new(0, fidelity);
-    let (movements, legal) = (babbling.movements(), babbling.legal());
-    let metadata = store::Metadata::new(numbers, config, 0, fidelity, movements, legal);
-    let theirs = store::save(&reaching, &metadata).unwrap();
+    let reaching = Learner::<ReachNetwork>::new(brain, 0, ReachBabbling::default()).unwrap();
+    let theirs = reaching.save(task.config).unwrap();
     assert!(refused(&theirs).contains("gym_babble.grasp"));
-    assert!(matches!(store::load(&bytes), Err(AgentError::File { .. })));
+    let reached = Learner::<ReachNetwork>::load(&bytes);
+    assert!(matches!(reached, Err(AgentError::File { .. })));
 }
 
-/// A file whose weights do not fit their maps names what does not fit.
+/// Weights that do not fit their association are named, and nothing is set.
 #[test]
 fn parts_that_do_not_fit_are_named() {
-    let (hebb, ..) = agent();
-    let parts =
-        |w: &babble_brain::Association| [w.weights(), w.a_bar(), w.g_bar()].map(<[f32]>::to_vec);
-    let config = hebb.config().clone();
-    let whole = GraspHebb::from_parts(config.clone(), parts(hebb.reach()), parts(hebb.grasp()));
-    assert_eq!(whole.unwrap().grasp(), hebb.grasp());
-    for (i, name) in ["weights", "a_bar", "g_bar"].into_iter().enumerate() {
-        let mut short = parts(hebb.grasp());
-        short[i].pop();
-        let error = GraspHebb::from_parts(config.clone(), parts(hebb.reach()), short).unwrap_err();
-        assert!(
-            error.to_string().contains(&format!("grasp.{name}")),
-            "{error}"
-        );
+    let mut network = agent().0.network;
+    let before = network.clone();
+    let parts: Vec<[Vec<f32>; 3]> = network
+        .associations()
+        .iter()
+        .map(|w| [w.weights(), w.a_mean(), w.g_mean()].map(<[f32]>::to_vec))
+        .collect();
+    for (i, whole) in parts.iter().enumerate() {
+        for (part, name) in ["weights", "a_mean", "g_mean"].into_iter().enumerate() {
+            let mut short = whole.clone();
+            short[part].pop();
+            let error = network.set(i, &short[0], &short[1], &short[2]);
+            assert!(error.unwrap_err().to_string().starts_with(name));
+        }
+        let mut large = whole.clone();
+        large[0][3] = 0.3;
+        assert!(network.set(i, &large[0], &large[1], &large[2]).is_err());
+        assert!(network.set(i, &whole[0], &whole[1], &whole[2]).is_ok());
     }
-    let mut large = parts(hebb.reach());
-    large[0][3] = 0.3;
-    assert!(GraspHebb::from_parts(config, large, parts(hebb.grasp())).is_err());
+    assert_eq!(network.associations(), before.associations());
 }

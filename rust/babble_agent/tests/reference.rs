@@ -1,6 +1,6 @@
 //! The agents that need no learning.
 
-use babble_agent::reference::{case_from_senses, oracle, plan, scripted};
+use babble_agent::reach::reference::{case_from_senses, oracle, plan, scripted};
 use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
 use babble_env::tasks::reach::protocol;
 use babble_env::tasks::reach::{CaseRequest, ObstacleRequest};

@@ -1,5 +1,7 @@
 //! What the brain refuses, and why.
 
+use std::borrow::Cow;
+
 use thiserror::Error;
 
 /// A number or a length that the brain cannot work with.
@@ -10,7 +12,7 @@ pub enum BrainError {
     #[error("{field} = {value} is out of range: {bound}")]
     OutOfRange {
         /// Name of the parameter.
-        field: &'static str,
+        field: Cow<'static, str>,
         /// The value given.
         value: f64,
         /// The range in words, for instance "0 < eta <= 1".
@@ -36,22 +38,22 @@ pub enum BrainError {
         /// The value given.
         value: f32,
     },
-    /// A connection weight is beyond the bound of Eq. 7, or no number.
-    #[error("w[{index}] = {value} is no weight of this rule: |w| <= w_max = {w_max}")]
-    Weight {
+    /// A connection weight is infinite or no number.
+    #[error("{field}[{index}] = {value} is not finite")]
+    NotFinite {
+        /// Name of the slice.
+        field: &'static str,
         /// Where in the row-major matrix the first such weight stands.
         index: usize,
-        /// The weight given.
+        /// The value given.
         value: f32,
-        /// The bound.
-        w_max: f32,
     },
 }
 
 /// `Ok` if `valid`, otherwise [`BrainError::OutOfRange`].
 pub(crate) fn check_range(
     valid: bool,
-    field: &'static str,
+    field: impl Into<Cow<'static, str>>,
     value: f64,
     bound: &'static str,
 ) -> Result<(), BrainError> {
@@ -59,7 +61,7 @@ pub(crate) fn check_range(
         Ok(())
     } else {
         Err(BrainError::OutOfRange {
-            field,
+            field: field.into(),
             value,
             bound,
         })
@@ -83,11 +85,26 @@ pub(crate) fn check_length(
     }
 }
 
-/// `Ok` if every value is in \[0, 1\], otherwise [`BrainError::Activity`] for the first other one.
-pub(crate) fn check_activity(field: &'static str, values: &[f32]) -> Result<(), BrainError> {
+/// `Ok` if every value is in \[0, 1\].
+///
+/// # Errors
+/// [`BrainError::Activity`] for the first other one.
+pub fn check_activity(field: &'static str, values: &[f32]) -> Result<(), BrainError> {
     match values.iter().position(|v| !(0.0..=1.0).contains(v)) {
         None => Ok(()),
         Some(index) => Err(BrainError::Activity {
+            field,
+            index,
+            value: values[index],
+        }),
+    }
+}
+
+/// `Ok` if every value is finite, otherwise [`BrainError::NotFinite`] for the first other one.
+pub(crate) fn check_finite(field: &'static str, values: &[f32]) -> Result<(), BrainError> {
+    match values.iter().position(|v| !v.is_finite()) {
+        None => Ok(()),
+        Some(index) => Err(BrainError::NotFinite {
             field,
             index,
             value: values[index],

@@ -45,6 +45,7 @@ pub struct Executor {
     #[cfg(feature = "threads")]
     pool: Threads,
     interrupted: fn() -> bool,
+    clock: Clock,
 }
 
 impl Executor {
@@ -65,6 +66,7 @@ impl Executor {
             #[cfg(feature = "threads")]
             pool: Threads::default(),
             interrupted: || false,
+            clock: Clock::default(),
         })
     }
 
@@ -98,9 +100,8 @@ impl Executor {
             return self.run_until(move |stop| threads::map(indices, stop, each))?;
         }
         let mut results = Vec::with_capacity(indices.len());
-        let mut clock = Clock::default();
         for i in indices {
-            clock.check(self.interrupted)?;
+            self.clock.check(self.interrupted)?;
             results.push(each(i)?);
         }
         Ok(results)
@@ -151,6 +152,7 @@ impl Executor {
 }
 
 /// When it was last asked whether to go on; without threads there is no clock, and it is asked always.
+#[derive(Debug)]
 struct Clock {
     #[cfg(feature = "threads")]
     asked: std::time::Instant,

@@ -127,7 +127,7 @@ pub(crate) fn wide_rows<T: numpy::Element + Copy>(
     Ok(array.rows().into_iter().map(|row| row.to_vec()).collect())
 }
 
-fn check_width(shape: &[usize], width: usize, what: &'static str) -> PyResult<()> {
+pub(crate) fn check_width(shape: &[usize], width: usize, what: &'static str) -> PyResult<()> {
     if shape.last() == Some(&width) {
         return Ok(());
     }

@@ -40,9 +40,7 @@ pub(crate) fn agent(error: AgentError) -> PyErr {
     match error {
         AgentError::Env(error) => env(error),
         AgentError::File { .. } => AgentFileError::new_err(error.to_string()),
-        AgentError::NothingLegal { .. } | AgentError::NothingHeld { .. } => {
-            ScenarioError::new_err(error.to_string())
-        }
+        AgentError::NothingToLearn { .. } => ScenarioError::new_err(error.to_string()),
         _ => ConfigError::new_err(error.to_string()),
     }
 }

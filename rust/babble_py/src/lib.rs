@@ -9,9 +9,9 @@ mod config;
 mod convert;
 mod errors;
 mod grasp;
-mod grasp_hebb;
 mod guarded;
-mod hebb;
+mod learner;
+mod policy;
 mod reach;
 mod signals;
 mod task;
@@ -26,17 +26,19 @@ mod _core {
     #[pymodule_export]
     use crate::batch::Batch;
     #[pymodule_export]
-    use crate::brain::{Association, PopulationMap, generator_curve};
+    use crate::brain::{
+        Association, ConjunctiveMap, PopulationMap, generator_curve, place_curve, rule_json,
+    };
     #[pymodule_export]
     use crate::config::{complete_config, load_config, outcomes, profile_config, profiles};
     #[pymodule_export]
-    use crate::grasp::{grasp_posture, hold, looked_at};
+    use crate::grasp::{grasp_posture, hold};
     #[pymodule_export]
-    use crate::grasp_hebb::GraspHebb;
+    use crate::learner::{Learner, babble, babble_steps, brain_json};
     #[pymodule_export]
-    use crate::hebb::Hebb;
+    use crate::policy::{Plans, Reference};
     #[pymodule_export]
-    use crate::reach::{movement, oracle, place, plan, posture_at, scripted};
+    use crate::reach::{movement, place, posture_at};
     #[pymodule_export]
     use crate::task::{Task, registry_json};
     use pyo3::prelude::*;

@@ -1,8 +1,7 @@
 //! How well the reflex holds: objects put at the palm, carried about without support.
 
 use babble_env::tasks::grasp::{GraspTask, InHand};
-use babble_env::{EnvError, Executor, Purpose, Stop, Stream};
-use rayon::prelude::*;
+use babble_env::{EnvError, Executor, Purpose, Stream};
 
 /// Time that the reflex closes the hand before the support goes \[s\].
 const CLOSING_S: f64 = 3.0;
@@ -22,45 +21,58 @@ pub struct Trial {
     pub flexion: [f64; 2],
 }
 
+/// How many objects of a size the reflex holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Holding {
+    /// Trials in which the object was in the hand at the end.
+    pub held: usize,
+    /// How deep an object was inside of arm and hand at most \[m\].
+    pub penetration: f64,
+    /// Mean flexion of thumb and finger before the support went \[rad\].
+    pub flexion: [f64; 2],
+}
+
+impl Holding {
+    /// The summary of some trials.
+    #[must_use]
+    pub fn of(trials: &[Trial]) -> Self {
+        let n = trials.len() as f64;
+        let mean = |i: usize| trials.iter().map(|trial| trial.flexion[i]).sum::<f64>() / n;
+        let depths = trials.iter().map(|trial| trial.penetration);
+        Self {
+            held: trials.iter().filter(|trial| trial.held).count(),
+            penetration: depths.fold(0.0, f64::max),
+            flexion: [mean(0), mean(1)],
+        }
+    }
+}
+
 /// `n` trials with the seeds 0, 1, …: the reflex closes on an object of `diameter` \[m\] in a random
 /// posture, the support goes, and the arm moves for 10 s to a random posture every half second.
 ///
 /// # Errors
-/// An error of the task or the pool.
+/// An error of the task or the executor.
 pub fn trials(
     task: &GraspTask,
     diameter: f64,
     n: usize,
-    pool: &mut Executor,
+    executor: &mut Executor,
 ) -> Result<Vec<Trial>, EnvError> {
-    pool.run_until(|stop| {
-        (0..n as u64)
-            .into_par_iter()
-            .map(|seed| {
-                trial(
-                    task,
-                    diameter,
-                    &mut Stream::new(Purpose::Test, seed, 0),
-                    stop,
-                )
-            })
-            .collect()
-    })?
+    executor.map(0..n, |seed| {
+        trial(
+            task,
+            diameter,
+            &mut Stream::new(Purpose::Test, seed as u64, 0),
+        )
+    })
 }
 
-fn trial(
-    task: &GraspTask,
-    diameter: f64,
-    stream: &mut Stream,
-    stop: &Stop,
-) -> Result<Trial, EnvError> {
-    stop.check()?;
+fn trial(task: &GraspTask, diameter: f64, stream: &mut Stream) -> Result<Trial, EnvError> {
     let mut object = InHand::draw(task, diameter, stream)?;
     let mut penetration = object.carry(task, object.start(), CLOSING_S);
     let [.., thumb, finger] = object.posture(task);
     object.remove_support(task);
     for _ in 0..(MOVING_S / CHANGE_S) as usize {
-        stop.check()?;
         let to = task.draw_free_posture(diameter / 2.0, stream)?;
         penetration = penetration.max(object.carry(task, to, CHANGE_S));
     }

@@ -1,10 +1,12 @@
-//! The paper's agent of grasping (Sect. IV): babbling with the object in the hand, and four maps.
+//! The paper's agent of grasping (Sect. IV): babbling with the object in the hand, and four maps; and
+//! how well the reflex holds.
 
 pub mod babbling;
 pub mod holding;
 mod network;
-mod store;
+mod oracle;
+pub mod policy;
 
-pub use babbling::{Experience, GraspBabbling, HandPosture};
-pub use network::{GraspHebb, GraspHebbConfig, Recalled};
-pub use store::{Metadata, load, save};
+pub use babbling::{Experience, HandPosture};
+pub use network::{GraspBrain, GraspNetwork, Recalled};
+pub use oracle::Oracle;

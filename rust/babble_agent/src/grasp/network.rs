@@ -1,36 +1,42 @@
 //! Four maps: where the object is recalls the arm, what it is recalls the hand (Fig. 6).
 
-use babble_brain::covariance::{Association, CovarianceConfig};
-use babble_brain::maps::{MapConfig, PopulationMap};
+use std::sync::Arc;
+
+use babble_brain::{Association, MapConfig, PopulationMap};
+use babble_env::GraspTask;
 use babble_env::tasks::grasp::FOVEA_NEURONS;
 use serde::{Deserialize, Serialize};
 
 use super::babbling::Experience;
+use super::policy::{ChooseGrasp, GraspPolicy, Sight};
 use crate::error::AgentError;
+use crate::network::{Activities, Network, Recall};
+use crate::policy::{Grasp, Policy, percepts};
+use crate::rule::Rule;
 
 /// Numbers of the maps and the learning rule.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct GraspHebbConfig {
+pub struct GraspBrain {
     /// Neurons along each side of the maps of eye, arm and hand; 21 \[P\]. That of the fovea has 21
     /// always.
     pub neurons: usize,
     /// Width σ of the tuning curves in spacings of neurons (Eq. 3); 0.7 \[P, unit C\].
     pub sigma: f64,
-    /// Learning rate η, limit `w_max` and decay ξ of Eq. 7; 1, 0.2, 0.2 \[P\].
-    pub rule: CovarianceConfig,
+    /// The learning rule and its numbers; Eq. 7 with η = 1, `w_max` = 0.2, ξ = 0.2 \[P\].
+    pub rule: Rule,
     /// How much further than recalled the hand closes on contact \[deg\], up to the reflex's flexion;
     /// 20 \[C\]. The recalled posture is that of a hand around the object: as equilibrium point it
     /// would press with no force.
     pub squeeze_deg: f64,
 }
 
-impl Default for GraspHebbConfig {
+impl Default for GraspBrain {
     fn default() -> Self {
         Self {
             neurons: 21,
             sigma: 0.7,
-            rule: CovarianceConfig::default(),
+            rule: Rule::default(),
             squeeze_deg: 20.0,
         }
     }
@@ -47,8 +53,8 @@ pub struct Recalled {
 
 /// A network that learns where to reach and how to grasp.
 #[derive(Debug, Clone)]
-pub struct GraspHebb {
-    config: GraspHebbConfig,
+pub struct GraspNetwork {
+    config: GraspBrain,
     eye: PopulationMap,
     arm: PopulationMap,
     hand: PopulationMap,
@@ -58,54 +64,123 @@ pub struct GraspHebb {
     grasp: Association,
 }
 
-impl GraspHebb {
-    /// A network that has learnt nothing.
-    ///
-    /// # Errors
-    /// [`AgentError`] naming the field that is out of bounds.
-    pub fn new(config: GraspHebbConfig) -> Result<Self, AgentError> {
-        let (unit, hand) = maps(&config)?;
-        let reach = Association::new(&config.rule, unit.len(), unit.len())?;
-        let grasp = Association::new(&config.rule, FOVEA_NEURONS, hand.len())?;
-        Self::with(config, reach, grasp)
+impl Network for GraspNetwork {
+    type Task = GraspTask;
+    type Config = GraspBrain;
+
+    const TASK: &'static str = "grasp";
+    const KEY: &'static str = "gym_babble.grasp";
+    const PREFIXES: &'static [&'static str] = &["reach.", "grasp."];
+
+    fn variant(name: &str) -> Result<GraspBrain, AgentError> {
+        if name == "paper" {
+            return Ok(GraspBrain::default());
+        }
+        Err(AgentError::Config {
+            field: "variant",
+            problem: format!("{name:?} is not one of paper, in grasping"),
+        })
     }
 
-    /// A network with known weights, as stored: weights, averages of output and of input, of eye to
-    /// arm and of fovea to hand.
-    ///
-    /// # Errors
-    /// [`AgentError`] for weights that do not fit the maps or their limit.
-    pub fn from_parts(
-        config: GraspHebbConfig,
-        reach: [Vec<f32>; 3],
-        grasp: [Vec<f32>; 3],
-    ) -> Result<Self, AgentError> {
-        let (unit, hand) = maps(&config)?;
-        let reach = association(&config, "reach", reach, [unit.len(), unit.len()])?;
-        let grasp = association(&config, "grasp", grasp, [FOVEA_NEURONS, hand.len()])?;
-        Self::with(config, reach, grasp)
-    }
-
-    fn with(
-        config: GraspHebbConfig,
-        reach: Association,
-        grasp: Association,
-    ) -> Result<Self, AgentError> {
+    fn new(config: GraspBrain) -> Result<Self, AgentError> {
         let (unit, hand) = maps(&config)?;
         Ok(Self {
+            reach: Association::new(unit.len(), unit.len())?,
+            grasp: Association::new(FOVEA_NEURONS, hand.len())?,
             eye: unit.clone(),
             arm: unit,
             hand,
-            reach,
-            grasp,
             config,
         })
     }
 
-    /// Its numbers.
-    #[must_use]
-    pub const fn config(&self) -> &GraspHebbConfig {
+    fn config(&self) -> &GraspBrain {
         &self.config
+    }
+
+    fn rule(&self) -> &Rule {
+        &self.config.rule
+    }
+
+    fn associations(&self) -> Vec<&Association> {
+        vec![&self.reach, &self.grasp]
+    }
+
+    fn associations_mut(&mut self) -> Vec<&mut Association> {
+        vec![&mut self.reach, &mut self.grasp]
+    }
+
+    fn encode(&self, experiences: &[Experience]) -> Result<Vec<Activities>, AgentError> {
+        let encode = |map: &PopulationMap, pair: fn(&Experience) -> [f32; 2]| {
+            let x: Vec<f64> = experiences
+                .iter()
+                .flat_map(|experience| pair(experience).map(f64::from))
+                .collect();
+            let mut activity = vec![0.0; experiences.len() * map.len()];
+            map.encode(&x, &mut activity).map(|()| activity)
+        };
+        let fovea: Vec<f32> = experiences
+            .iter()
+            .flat_map(|experience| experience.fovea.iter().copied())
+            .collect();
+        // The only activities that are not encoded here.
+        babble_brain::error::check_activity("fovea", &fovea)?;
+        Ok(vec![
+            Activities {
+                g: encode(&self.eye, |e| e.eye)?,
+                a: encode(&self.arm, |e| e.arm)?,
+            },
+            Activities {
+                g: fovea,
+                a: encode(&self.hand, |e| e.hand)?,
+            },
+        ])
+    }
+
+    /// (tilt, pan) of the eye, and (y, x) of the fovea.
+    fn input_shapes(&self) -> Vec<Vec<usize>> {
+        let fovea = FOVEA_NEURONS.isqrt();
+        vec![vec![self.config.neurons; 2], vec![fovea; 2]]
+    }
+
+    fn recall_maps(&self, senses: &[f32]) -> Result<Vec<Recall>, AgentError> {
+        let (eye, fovea) = Self::split(senses)?;
+        let side = self.config.neurons;
+        let recall = |name, activity| Recall {
+            name,
+            activity,
+            side,
+        };
+        Ok(vec![
+            recall("arm", self.recall_arm(eye)?),
+            recall("hand", self.recall_hand(fovea)?),
+        ])
+    }
+
+    /// Shoulder and elbow as shares of their ranges, and equilibrium points of thumb and finger,
+    /// EP = 90° − flexion \[deg\].
+    fn decide_from(&self, senses: &[f32]) -> Result<Vec<f64>, AgentError> {
+        let (eye, fovea) = Self::split(senses)?;
+        let Recalled { arm, hand } = self.decide(eye, fovea)?;
+        Ok([arm, hand].concat())
+    }
+
+    fn policy(&self, task: Arc<GraspTask>) -> Result<Box<dyn Policy + '_>, AgentError> {
+        Ok(Box::new(GraspPolicy::new(task, self)?))
+    }
+}
+
+impl GraspNetwork {
+    /// Eye and fovea of a flat observation.
+    fn split(senses: &[f32]) -> Result<([f32; 2], &[f32]), AgentError> {
+        let [e0, e1, fovea @ ..] = percepts::<{ 2 + FOVEA_NEURONS }>(senses)?;
+        Ok(([*e0, *e1], fovea))
+    }
+
+    /// How much further than recalled the hand closes on contact \[deg\].
+    #[must_use]
+    pub const fn squeeze_deg(&self) -> f64 {
+        self.config.squeeze_deg
     }
 
     /// Weights from eye to arm.
@@ -120,36 +195,13 @@ impl GraspHebb {
         &self.grasp
     }
 
-    /// Learns from babbles in their order, Eq. 7. Runs in the rayon pool it is called in.
-    ///
-    /// # Errors
-    /// [`AgentError::Brain`] for activities that are not finite.
-    pub fn learn(&mut self, experiences: &[Experience]) -> Result<(), AgentError> {
-        let encode = |map: &PopulationMap, values: &dyn Fn(&Experience) -> [f32; 2]| {
-            let mut activity = vec![0.0; experiences.len() * map.len()];
-            for (experience, out) in experiences.iter().zip(activity.chunks_mut(map.len())) {
-                map.encode(values(experience).map(f64::from), out);
-            }
-            activity
-        };
-        let eye = encode(&self.eye, &|experience| experience.eye);
-        let arm = encode(&self.arm, &|experience| experience.arm);
-        let hand = encode(&self.hand, &|experience| experience.hand);
-        let fovea: Vec<f32> = experiences
-            .iter()
-            .flat_map(|experience| experience.fovea.iter().copied())
-            .collect();
-        self.reach.learn_batch(&eye, &arm)?;
-        Ok(self.grasp.learn_batch(&fovea, &hand)?)
-    }
-
     /// Activity of the arm's map for where the object is (pan and tilt over their ranges).
     ///
     /// # Errors
-    /// [`AgentError::Brain`] for percepts that are not finite.
+    /// [`AgentError::Brain`] never, as any eye posture is encoded.
     pub fn recall_arm(&self, eye: [f32; 2]) -> Result<Vec<f32>, AgentError> {
         let mut g = vec![0.0; self.eye.len()];
-        self.eye.encode(eye.map(f64::from), &mut g);
+        self.eye.encode(&eye.map(f64::from), &mut g)?;
         let mut a = vec![0.0; self.arm.len()];
         self.reach.recall(&g, &mut a)?;
         Ok(a)
@@ -170,15 +222,34 @@ impl GraspHebb {
     /// # Errors
     /// [`AgentError::Brain`] for percepts that are no activities.
     pub fn decide(&self, eye: [f32; 2], fovea: &[f32]) -> Result<Recalled, AgentError> {
-        Ok(Recalled {
-            arm: self.arm.read_out(&self.recall_arm(eye)?),
-            hand: self.hand.read_out(&self.recall_hand(fovea)?),
-        })
+        let (mut arm, mut hand) = ([0.0; 2], [0.0; 2]);
+        self.arm.read_out(&self.recall_arm(eye)?, &mut arm)?;
+        self.hand.read_out(&self.recall_hand(fovea)?, &mut hand)?;
+        Ok(Recalled { arm, hand })
+    }
+}
+
+impl ChooseGrasp for &GraspNetwork {
+    fn choose(&self, task: &GraspTask, sight: &Sight<'_>) -> Result<Grasp, AgentError> {
+        let recalled = self.decide(sight.eye, sight.fovea)?;
+        let (ranges, reflex) = (task.robot.ranges(), task.reflex());
+        let arm = [0, 1].map(|i| {
+            let [low, high] = ranges[i];
+            low + recalled.arm[i] * (high - low)
+        });
+        // A hand around the object would press with no force at its own posture.
+        let squeeze = self.squeeze_deg();
+        let hand = [0, 1].map(|i| {
+            (90.0 - recalled.hand[i] + squeeze)
+                .to_radians()
+                .min(reflex[i])
+        });
+        Ok(Grasp::straight(arm, hand))
     }
 }
 
 /// The map of two shares, which eye and arm have, and the map of the hand's equilibrium points.
-fn maps(config: &GraspHebbConfig) -> Result<(PopulationMap, PopulationMap), AgentError> {
+fn maps(config: &GraspBrain) -> Result<(PopulationMap, PopulationMap), AgentError> {
     if !(2..=101).contains(&config.neurons) {
         return Err(AgentError::Config {
             field: "neurons",
@@ -191,38 +262,8 @@ fn maps(config: &GraspHebbConfig) -> Result<(PopulationMap, PopulationMap), Agen
             problem: format!("{} is not in [0, 90]", config.squeeze_deg),
         });
     }
-    let map = |high: f64| {
-        PopulationMap::new(&MapConfig {
-            neurons: [config.neurons; 2],
-            low: [0.0; 2],
-            high: [high; 2],
-            sigma: config.sigma,
-        })
-    };
+    config.rule.validate()?;
+    let map =
+        |high| PopulationMap::new(&MapConfig::square(config.neurons, 0.0, high, config.sigma));
     Ok((map(1.0)?, map(90.0)?))
-}
-
-fn association(
-    config: &GraspHebbConfig,
-    name: &str,
-    [weights, a_bar, g_bar]: [Vec<f32>; 3],
-    [n_in, n_out]: [usize; 2],
-) -> Result<Association, AgentError> {
-    for (what, got, expected) in [
-        ("weights", weights.len(), n_in * n_out),
-        ("a_bar", a_bar.len(), n_out),
-        ("g_bar", g_bar.len(), n_in),
-    ] {
-        if got != expected {
-            return Err(AgentError::File {
-                problem: format!("{name}.{what} has {got} numbers, expected {expected}"),
-            });
-        }
-    }
-    Ok(Association::from_parts(
-        &config.rule,
-        weights,
-        a_bar,
-        g_bar,
-    )?)
 }

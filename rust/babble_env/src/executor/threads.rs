@@ -37,6 +37,8 @@ impl Executor {
         work: impl FnOnce(&Stop) -> T + Send,
     ) -> Result<T, EnvError> {
         let interrupted = self.interrupted;
+        // Work in many short parts is interrupted between them.
+        self.clock.check(interrupted)?;
         let pool = self.pool.start(self.threads)?;
         let stop = &Stop::default();
         let (sender, receiver) = channel();

@@ -21,7 +21,7 @@ use crate::task::{self, MAX_TERMS};
 const PROGRESS_UNIT_M: f64 = 0.1;
 
 /// What is drawn for a new episode.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub struct Drawn {
     case: ReachCase,
     /// Where the eye has found the target.

@@ -1,14 +1,20 @@
-//! Neural maps tied by the covariance rule: from what is seen to how to move.
+//! Neural maps and the association between them: from what is seen to how to move.
 
 use std::fmt;
 use std::str::FromStr;
+use std::sync::Arc;
 
-use babble_brain::covariance::{Association, CovarianceConfig};
-use babble_brain::maps::{ConjunctiveMap, MapConfig, PopulationMap};
+use babble_brain::{Association, ConjunctiveMap, MapConfig, PopulationMap};
+use babble_env::ReachTask;
+use babble_env::tasks::reach::SENSES;
 use serde::{Deserialize, Serialize};
 
-use crate::babbling::Experience;
+use super::babbling::Experience;
+use super::policy::{ChooseMovement, ReachPolicy};
 use crate::error::AgentError;
+use crate::network::{Activities, Network, Recall};
+use crate::policy::{Policy, percepts};
+use crate::rule::Rule;
 
 /// Which input map and readout are used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -47,7 +53,7 @@ impl FromStr for Variant {
 /// Numbers of the maps and the learning rule.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct HebbConfig {
+pub struct ReachBrain {
     /// Which input map and readout are used.
     pub variant: Variant,
     /// Neurons along each side of the output map; 21 \[P\].
@@ -62,11 +68,11 @@ pub struct HebbConfig {
     pub sigma: f64,
     /// Neurons to each side of the strongest that are read out; 2 \[C\]. Conjunctive variant only.
     pub peak_radius: usize,
-    /// Learning rate η, limit `w_max` and decay ξ of Eq. 7; 1, 0.2, 0.2 \[P\].
-    pub rule: CovarianceConfig,
+    /// The learning rule and its numbers; Eq. 7 with η = 1, `w_max` = 0.2, ξ = 0.2 \[P\].
+    pub rule: Rule,
 }
 
-impl HebbConfig {
+impl ReachBrain {
     /// The numbers of a variant.
     #[must_use]
     pub fn variant(variant: Variant) -> Self {
@@ -82,7 +88,7 @@ impl HebbConfig {
             target_neurons: 5,
             sigma: 0.7,
             peak_radius: 2,
-            rule: CovarianceConfig::default(),
+            rule: Rule::default(),
         }
     }
 }
@@ -94,120 +100,131 @@ enum Input {
     Conjunctive(ConjunctiveMap),
 }
 
-/// A network that learns which movement fits what is seen.
+/// A network that learns which movement fits what is seen (Fig. 3).
 #[derive(Debug, Clone)]
-pub struct Hebb {
-    config: HebbConfig,
+pub struct ReachNetwork {
+    config: ReachBrain,
     input: Input,
     output: PopulationMap,
-    weights: Association,
+    association: Association,
 }
 
-impl Hebb {
-    /// A network that has learnt nothing.
-    ///
-    /// # Errors
-    /// [`AgentError`] naming the field that is out of bounds.
-    pub fn new(config: HebbConfig) -> Result<Self, AgentError> {
+impl Network for ReachNetwork {
+    type Task = ReachTask;
+    type Config = ReachBrain;
+
+    const TASK: &'static str = "reach";
+    const KEY: &'static str = "gym_babble.reach";
+    const PREFIXES: &'static [&'static str] = &[""];
+
+    fn variant(name: &str) -> Result<ReachBrain, AgentError> {
+        Ok(ReachBrain::variant(name.parse()?))
+    }
+
+    fn new(config: ReachBrain) -> Result<Self, AgentError> {
         let (input, output) = maps(&config)?;
-        let weights = Association::new(&config.rule, input.len(), output.len())?;
+        let association = Association::new(input.len(), output.len())?;
         Ok(Self {
             config,
             input,
             output,
-            weights,
+            association,
         })
     }
 
-    /// A network with known weights, as stored.
-    ///
-    /// # Errors
-    /// [`AgentError`] for weights that do not fit the maps or their limit.
-    pub fn from_parts(
-        config: HebbConfig,
-        weights: Vec<f32>,
-        a_bar: Vec<f32>,
-        g_bar: Vec<f32>,
-    ) -> Result<Self, AgentError> {
-        let (input, output) = maps(&config)?;
-        let fits = |what: &str, got: usize, expected: usize| {
-            if got == expected {
-                return Ok(());
-            }
-            Err(AgentError::File {
-                problem: format!("{what} has {got} numbers, expected {expected}"),
-            })
-        };
-        fits("weights", weights.len(), input.len() * output.len())?;
-        fits("a_bar", a_bar.len(), output.len())?;
-        fits("g_bar", g_bar.len(), input.len())?;
-        let weights = Association::from_parts(&config.rule, weights, a_bar, g_bar)?;
-        Ok(Self {
-            config,
-            input,
-            output,
-            weights,
-        })
-    }
-
-    /// Its numbers.
-    #[must_use]
-    pub const fn config(&self) -> &HebbConfig {
+    fn config(&self) -> &ReachBrain {
         &self.config
     }
 
-    /// The weights `w_ji` and the running averages.
-    #[must_use]
-    pub const fn weights(&self) -> &Association {
-        &self.weights
+    fn rule(&self) -> &Rule {
+        &self.config.rule
     }
 
-    /// Neurons along the axes of the input map: (y, x) of the obstacle, or (y, x) of the target and
-    /// (y, x) of the obstacle.
-    #[must_use]
-    pub fn input_shape(&self) -> Vec<usize> {
+    fn associations(&self) -> Vec<&Association> {
+        vec![&self.association]
+    }
+
+    fn associations_mut(&mut self) -> Vec<&mut Association> {
+        vec![&mut self.association]
+    }
+
+    fn encode(&self, experiences: &[Experience]) -> Result<Vec<Activities>, AgentError> {
+        let eye: Vec<[f32; 2]> = experiences.iter().map(|e| e.eye).collect();
+        let obstacle: Vec<[f32; 2]> = experiences.iter().map(|e| e.obstacle).collect();
+        let b: Vec<f64> = experiences
+            .iter()
+            .flat_map(|e| e.b.map(f64::from))
+            .collect();
+        let mut a = vec![0.0; experiences.len() * self.output.len()];
+        self.output.encode(&b, &mut a)?;
+        let g = self.perceive(&eye, &obstacle)?;
+        Ok(vec![Activities { g, a }])
+    }
+
+    /// (y, x) of the obstacle, or (y, x) of the target and (y, x) of the obstacle.
+    fn input_shapes(&self) -> Vec<Vec<usize>> {
         let (target, obstacle) = (self.config.target_neurons, self.config.obstacle_neurons);
-        match self.input {
+        vec![match self.input {
             Input::Obstacle(_) => vec![obstacle; 2],
             Input::Conjunctive(_) => vec![target, target, obstacle, obstacle],
-        }
+        }]
     }
 
-    /// Learns from legal movements in their order, Eq. 7. Runs in the rayon pool it is called in.
+    fn recall_maps(&self, senses: &[f32]) -> Result<Vec<Recall>, AgentError> {
+        let [e0, e1, o0, o1] = *percepts(senses)?;
+        Ok(vec![Recall {
+            name: "movement",
+            activity: self.recall([e0, e1], [o0, o1])?,
+            side: self.config.output_neurons,
+        }])
+    }
+
+    /// Parameters (b1, b2) of the movement.
+    fn decide_from(&self, senses: &[f32]) -> Result<Vec<f64>, AgentError> {
+        let [e0, e1, o0, o1] = *percepts(senses)?;
+        Ok(self.decide([e0, e1], [o0, o1])?.to_vec())
+    }
+
+    fn policy(&self, task: Arc<ReachTask>) -> Result<Box<dyn Policy + '_>, AgentError> {
+        Ok(Box::new(ReachPolicy::new(task, self)?))
+    }
+}
+
+impl ReachNetwork {
+    /// Activity of the input map for what is seen, Eq. 3.
     ///
     /// # Errors
-    /// [`AgentError::Brain`] for activities that are not finite.
-    pub fn learn(&mut self, experiences: &[Experience]) -> Result<(), AgentError> {
-        let (n_in, n_out) = (self.input.len(), self.output.len());
-        let mut g = vec![0.0; experiences.len() * n_in];
-        let mut a = vec![0.0; experiences.len() * n_out];
-        for (i, experience) in experiences.iter().enumerate() {
-            self.input.encode(
-                experience.eye,
-                experience.obstacle,
-                &mut g[i * n_in..][..n_in],
-            );
-            self.output
-                .encode(experience.b.map(f64::from), &mut a[i * n_out..][..n_out]);
+    /// [`AgentError::Brain`] for another number of obstacles than of eyes.
+    pub fn perceive(
+        &self,
+        eye: &[[f32; 2]],
+        obstacle: &[[f32; 2]],
+    ) -> Result<Vec<f32>, AgentError> {
+        let double = |pairs: &[[f32; 2]]| -> Vec<f64> {
+            pairs
+                .as_flattened()
+                .iter()
+                .copied()
+                .map(f64::from)
+                .collect()
+        };
+        let obstacle = double(obstacle);
+        let mut g = vec![0.0; eye.len() * self.input.len()];
+        match &self.input {
+            Input::Obstacle(map) => map.encode(&obstacle, &mut g)?,
+            Input::Conjunctive(map) => map.encode(&obstacle, &double(eye), &mut g)?,
         }
-        Ok(self.weights.learn_batch(&g, &a)?)
-    }
-
-    /// Activity of the input map for what is seen, Eq. 3.
-    #[must_use]
-    pub fn perceive(&self, eye: [f32; 2], obstacle: [f32; 2]) -> Vec<f32> {
-        let mut g = vec![0.0; self.input.len()];
-        self.input.encode(eye, obstacle, &mut g);
-        g
+        Ok(g)
     }
 
     /// Activity of the output map for what is seen.
     ///
     /// # Errors
-    /// [`AgentError::Brain`] for percepts that are not finite.
+    /// As [`Self::perceive`].
     pub fn recall(&self, eye: [f32; 2], obstacle: [f32; 2]) -> Result<Vec<f32>, AgentError> {
         let mut a = vec![0.0; self.output.len()];
-        self.weights.recall(&self.perceive(eye, obstacle), &mut a)?;
+        self.association
+            .recall(&self.perceive(&[eye], &[obstacle])?, &mut a)?;
         Ok(a)
     }
 
@@ -217,10 +234,22 @@ impl Hebb {
     /// As [`Self::recall`].
     pub fn decide(&self, eye: [f32; 2], obstacle: [f32; 2]) -> Result<[f64; 2], AgentError> {
         let a = self.recall(eye, obstacle)?;
-        Ok(match self.config.variant {
-            Variant::Paper => self.output.read_out(&a),
-            Variant::Conjunctive => self.output.read_out_peak(&a, self.config.peak_radius),
-        })
+        let mut b = [0.0; 2];
+        match self.config.variant {
+            Variant::Paper => self.output.read_out(&a, &mut b)?,
+            Variant::Conjunctive => {
+                self.output
+                    .read_out_peak(&a, self.config.peak_radius, &mut b)?;
+            }
+        }
+        Ok(b)
+    }
+}
+
+impl ChooseMovement for &ReachNetwork {
+    fn choose(&self, _task: &ReachTask, senses: &[f32; SENSES]) -> Result<[f64; 2], AgentError> {
+        let [e0, e1, o0, o1, ..] = *senses;
+        self.decide([e0, e1], [o0, o1])
     }
 }
 
@@ -231,25 +260,12 @@ impl Input {
             Self::Conjunctive(map) => map.len(),
         }
     }
-
-    fn encode(&self, eye: [f32; 2], obstacle: [f32; 2], out: &mut [f32]) {
-        let obstacle = obstacle.map(f64::from);
-        match self {
-            Self::Obstacle(map) => map.encode(obstacle, out),
-            Self::Conjunctive(map) => map.encode(obstacle, eye.map(f64::from), out),
-        }
-    }
 }
 
-fn maps(config: &HebbConfig) -> Result<(Input, PopulationMap), AgentError> {
+fn maps(config: &ReachBrain) -> Result<(Input, PopulationMap), AgentError> {
     check(config)?;
     let map = |neurons: usize, low: f64, high: f64| {
-        PopulationMap::new(&MapConfig {
-            neurons: [neurons; 2],
-            low: [low; 2],
-            high: [high; 2],
-            sigma: config.sigma,
-        })
+        PopulationMap::new(&MapConfig::square(neurons, low, high, config.sigma))
     };
     let field = config.obstacle_field_deg.to_radians();
     let obstacle = map(config.obstacle_neurons, -field, field)?;
@@ -263,7 +279,7 @@ fn maps(config: &HebbConfig) -> Result<(Input, PopulationMap), AgentError> {
     Ok((input, map(config.output_neurons, 0.0, 1.0)?))
 }
 
-fn check(config: &HebbConfig) -> Result<(), AgentError> {
+fn check(config: &ReachBrain) -> Result<(), AgentError> {
     let sides = [
         ("output_neurons", config.output_neurons),
         ("obstacle_neurons", config.obstacle_neurons),
@@ -284,5 +300,5 @@ fn check(config: &HebbConfig) -> Result<(), AgentError> {
             problem,
         });
     }
-    Ok(())
+    Ok(config.rule.validate()?)
 }

@@ -1,6 +1,6 @@
 //! Laws of the covariance rule, Eq. 7, and of recall.
 
-use babble_brain::{Association, BrainError, CovarianceConfig};
+use babble_brain::{Association, BrainError, CovarianceRule};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -8,13 +8,14 @@ use proptest::prelude::*;
 const N_IN: usize = 77;
 const N_OUT: usize = 53;
 
-fn association(eta: f32, xi: f32) -> Association {
-    let config = CovarianceConfig {
-        eta,
-        xi,
-        ..CovarianceConfig::default()
-    };
-    Association::new(&config, N_IN, N_OUT).unwrap()
+const PAPER: CovarianceRule = CovarianceRule {
+    eta: 1.0,
+    w_max: 0.2,
+    xi: 0.2,
+};
+
+fn unlearnt() -> Association {
+    Association::new(N_IN, N_OUT).unwrap()
 }
 
 /// Activities as a map gives them: most of them silent or tiny, some strong, some exactly 0 or 1.
@@ -41,8 +42,8 @@ fn stream(movements: usize, n: usize, mut seed: u32) -> Vec<f32> {
 fn bits(association: &Association) -> Vec<u32> {
     let parts = [
         association.weights(),
-        association.a_bar(),
-        association.g_bar(),
+        association.a_mean(),
+        association.g_mean(),
     ];
     parts.concat().into_iter().map(f32::to_bits).collect()
 }
@@ -53,20 +54,18 @@ fn bits(association: &Association) -> Vec<u32> {
 fn batch_equals_single_steps() {
     let movements = 150;
     let (gs, as_) = (stream(movements, N_IN, 1), stream(movements, N_OUT, 2));
-    let mut single = association(1.0, 0.2);
+    let mut single = unlearnt();
     for (g, a) in gs.chunks_exact(N_IN).zip(as_.chunks_exact(N_OUT)) {
-        single.learn(g, a).unwrap();
+        single.learn(&PAPER, g, a).unwrap();
     }
     for threads in [1, 2, 8] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        let mut batch = association(1.0, 0.2);
+        let mut batch = unlearnt();
         pool.build().unwrap().install(|| {
-            batch
-                .learn_batch(&gs[..7 * N_IN], &as_[..7 * N_OUT])
-                .unwrap();
-            batch
-                .learn_batch(&gs[7 * N_IN..], &as_[7 * N_OUT..])
-                .unwrap();
+            let (g, later_g) = gs.split_at(7 * N_IN);
+            let (a, later_a) = as_.split_at(7 * N_OUT);
+            batch.learn(&PAPER, g, a).unwrap();
+            batch.learn(&PAPER, later_g, later_a).unwrap();
         });
         assert_eq!(bits(&batch), bits(&single), "{threads} threads");
     }
@@ -78,8 +77,13 @@ fn batch_equals_single_steps() {
 fn learns_equation_7() {
     let movements = 200;
     let (gs, as_) = (stream(movements, N_IN, 3), stream(movements, N_OUT, 4));
-    let mut association = association(0.5, 0.3);
-    association.learn_batch(&gs, &as_).unwrap();
+    let mut association = unlearnt();
+    let rule = CovarianceRule {
+        eta: 0.5,
+        xi: 0.3,
+        ..PAPER
+    };
+    association.learn(&rule, &gs, &as_).unwrap();
     let (eta, xi, w_max) = (0.5, f64::from(0.3_f32), f64::from(0.2_f32));
     let mut w = vec![0.0_f64; N_OUT * N_IN];
     let (mut a_bar, mut g_bar) = (vec![0.0_f64; N_OUT], vec![0.0_f64; N_IN]);
@@ -98,7 +102,7 @@ fn learns_equation_7() {
     for (learnt, expected) in association.weights().iter().zip(&w) {
         assert!((f64::from(*learnt) - expected).abs() < 1e-6);
     }
-    for (learnt, expected) in association.a_bar().iter().zip(&a_bar) {
+    for (learnt, expected) in association.a_mean().iter().zip(&a_bar) {
         assert!((f64::from(*learnt) - expected).abs() < 1e-6);
     }
 }
@@ -107,13 +111,17 @@ fn learns_equation_7() {
 /// Catches subnormal arithmetic, which makes learning tens of times slower.
 #[test]
 fn averages_fade_to_zero() {
-    let mut association = association(1.0, 0.2);
-    association.learn(&[1.0; N_IN], &[1.0; N_OUT]).unwrap();
+    let mut association = unlearnt();
+    association
+        .learn(&PAPER, &[1.0; N_IN], &[1.0; N_OUT])
+        .unwrap();
     for _ in 0..40 {
-        association.learn(&[0.0; N_IN], &[0.0; N_OUT]).unwrap();
+        association
+            .learn(&PAPER, &[0.0; N_IN], &[0.0; N_OUT])
+            .unwrap();
     }
-    assert!(association.a_bar().iter().all(|&bar| bar == 0.0));
-    assert!(association.g_bar().iter().all(|&bar| bar == 0.0));
+    assert!(association.a_mean().iter().all(|&bar| bar == 0.0));
+    assert!(association.g_mean().iter().all(|&bar| bar == 0.0));
 }
 
 /// A deviation below 1e-10 teaches nothing, on either side; one above does.
@@ -121,8 +129,8 @@ fn averages_fade_to_zero() {
 #[test]
 fn silence_teaches_nothing() {
     let learnt = |g, a| {
-        let mut one = association(1.0, 0.2);
-        one.learn(&[g; N_IN], &[a; N_OUT]).unwrap();
+        let mut one = unlearnt();
+        one.learn(&PAPER, &[g; N_IN], &[a; N_OUT]).unwrap();
         one.weights()[0]
     };
     assert_eq!(learnt(9e-11, 1.0), 0.0);
@@ -134,44 +142,32 @@ fn silence_teaches_nothing() {
 /// Catches the runaway of Eq. 7 where `w_max - |w|` is negative.
 #[test]
 fn weight_past_the_bound_stays() {
-    let config = CovarianceConfig::default();
-    for w in [config.w_max.next_up(), -config.w_max.next_up()] {
-        let parts = (vec![w], vec![0.5], vec![0.5]);
-        let mut one = Association::from_parts(&config, parts.0, parts.1, parts.2).unwrap();
+    for w in [PAPER.w_max.next_up(), -PAPER.w_max.next_up()] {
+        let mut one = Association::from_parts(&[w], &[0.5], &[0.5]).unwrap();
         for k in 0..100 {
-            one.learn(&[(k % 2) as f32], &[(k / 2 % 2) as f32]).unwrap();
+            one.learn(&PAPER, &[(k % 2) as f32], &[(k / 2 % 2) as f32])
+                .unwrap();
         }
         assert_eq!(one.weights(), [w]);
     }
 }
 
+/// An association of no neurons or of too many is refused.
 #[test]
-fn bad_configs_are_named() {
-    let field = |config: CovarianceConfig, n_in, n_out| match Association::new(&config, n_in, n_out)
-    {
+fn bad_sizes_are_named() {
+    let field = |n_in, n_out| match Association::new(n_in, n_out) {
         Err(BrainError::OutOfRange { field, .. }) => field,
         other => panic!("{other:?}"),
     };
-    let paper = CovarianceConfig::default;
-    for eta in [0.0, 1.1, f32::NAN] {
-        assert_eq!(field(CovarianceConfig { eta, ..paper() }, 2, 2), "eta");
-    }
-    for w_max in [0.0, -0.2, f32::INFINITY, f32::NAN] {
-        assert_eq!(field(CovarianceConfig { w_max, ..paper() }, 2, 2), "w_max");
-    }
-    for xi in [-0.1, 1.0, f32::NAN] {
-        assert_eq!(field(CovarianceConfig { xi, ..paper() }, 2, 2), "xi");
-    }
-    assert_eq!(field(paper(), 0, 2), "n_in");
-    assert_eq!(field(paper(), 2, 0), "n_out");
-    assert_eq!(field(paper(), 1 << 20, 1 << 20), "n_out");
-    assert!(toml::from_str::<CovarianceConfig>("etta = 1").is_err());
+    assert_eq!(field(0, 2), "n_in");
+    assert_eq!(field(2, 0), "n_out");
+    assert_eq!(field(1 << 20, 1 << 20), "n_out");
 }
 
 /// Wrong lengths and activities that are none are refused by name, and nothing is learnt.
 #[test]
 fn bad_activities_are_named() {
-    let mut association = association(1.0, 0.2);
+    let mut association = unlearnt();
     let before = bits(&association);
     let (g, a) = ([0.5; N_IN], [0.5; N_OUT]);
     let length = |field, expected, actual| BrainError::Length {
@@ -179,50 +175,64 @@ fn bad_activities_are_named() {
         expected,
         actual,
     };
-    let short = association.learn(&g[1..], &a).unwrap_err();
-    assert_eq!(short, length("g", N_IN, N_IN - 1));
-    let unpaired = association.learn_batch(&[0.5; 2 * N_IN], &a).unwrap_err();
-    assert_eq!(unpaired, length("as_", 2 * N_OUT, N_OUT));
-    let ragged = association.learn_batch(&[0.5; N_IN + 1], &a).unwrap_err();
-    assert_eq!(ragged, length("gs", N_IN, N_IN + 1));
+    let short = association.learn(&PAPER, &g[1..], &a).unwrap_err();
+    assert_eq!(short, length("g", 0, N_IN - 1));
+    let mut learn = |g: &[f32]| association.learn(&PAPER, g, &a).unwrap_err();
+    assert_eq!(learn(&[0.5; 2 * N_IN]), length("a", 2 * N_OUT, N_OUT));
+    assert_eq!(learn(&[0.5; N_IN + 1]), length("g", N_IN, N_IN + 1));
     for value in [-0.1, 1.5, f32::NAN, f32::INFINITY] {
         let mut bad = a;
         bad[3] = value;
-        let message = association.learn(&g, &bad).unwrap_err().to_string();
+        let message = association.learn(&PAPER, &g, &bad).unwrap_err().to_string();
         assert!(message.starts_with("a[3] = "), "{message}");
     }
     let mut out = [9.0; N_OUT];
     let few = association.recall(&g, &mut out[1..]).unwrap_err();
-    assert_eq!(few, length("out", N_OUT, N_OUT - 1));
+    assert_eq!(few, length("g", 0, N_IN));
     assert!(association.recall(&[f32::NAN; N_IN], &mut out).is_err());
     assert_eq!(bits(&association), before);
 }
 
 #[test]
 fn parts_that_do_not_fit_are_named() {
-    let config = CovarianceConfig::default();
-    let parts = |w: f32, n: usize, bar: f32| {
-        Association::from_parts(&config, vec![w; n], vec![bar; 2], vec![0.0; 3])
-    };
+    let parts =
+        |w: f32, n: usize, mean: f32| Association::from_parts(&vec![w; n], &[mean; 2], &[0.0; 3]);
     assert!(parts(-0.2, 6, 0.5).is_ok());
     let error = |result: Result<Association, BrainError>| result.unwrap_err().to_string();
-    assert!(error(parts(0.1, 5, 0.5)).starts_with("w has 5 elements, expected 6"));
-    assert!(error(parts(0.1, 6, 1.5)).starts_with("a_bar[0] = 1.5"));
-    assert!(error(parts(0.21, 6, 0.5)).starts_with("w[0] = 0.21"));
-    assert!(error(parts(f32::NAN, 6, 0.5)).starts_with("w[0] = NaN"));
+    assert!(error(parts(0.1, 5, 0.5)).starts_with("weights has 5 elements, expected 6"));
+    assert!(error(parts(0.1, 6, 1.5)).starts_with("a_mean[0] = 1.5"));
+    assert!(error(parts(f32::INFINITY, 6, 0.5)).starts_with("weights[0] = inf"));
+    assert!(error(parts(f32::NAN, 6, 0.5)).starts_with("weights[0] = NaN"));
 }
 
 /// An association goes on learning from its parts as if it had never been taken apart.
 #[test]
 fn parts_hold_the_whole_state() {
     let (gs, as_) = (stream(20, N_IN, 5), stream(20, N_OUT, 6));
-    let mut whole = association(1.0, 0.2);
-    whole.learn_batch(&gs, &as_).unwrap();
-    let [w, a_bar, g_bar] = [whole.weights(), whole.a_bar(), whole.g_bar()].map(<[f32]>::to_vec);
-    let mut rebuilt = Association::from_parts(whole.config(), w, a_bar, g_bar).unwrap();
-    whole.learn_batch(&gs, &as_).unwrap();
-    rebuilt.learn_batch(&gs, &as_).unwrap();
+    let mut whole = unlearnt();
+    whole.learn(&PAPER, &gs, &as_).unwrap();
+    let mut rebuilt =
+        Association::from_parts(whole.weights(), whole.a_mean(), whole.g_mean()).unwrap();
+    whole.learn(&PAPER, &gs, &as_).unwrap();
+    rebuilt.learn(&PAPER, &gs, &as_).unwrap();
     assert_eq!(rebuilt, whole);
+}
+
+/// A batch of stimuli recalls what each of them does.
+#[test]
+fn recalls_in_batches() {
+    let mut association = unlearnt();
+    let gs = stream(5, N_IN, 7);
+    association
+        .learn(&PAPER, &gs, &stream(5, N_OUT, 8))
+        .unwrap();
+    let mut batch = vec![0.0; 5 * N_OUT];
+    association.recall(&gs, &mut batch).unwrap();
+    for (g, a) in gs.chunks_exact(N_IN).zip(batch.chunks_exact(N_OUT)) {
+        let mut one = vec![0.0; N_OUT];
+        association.recall(g, &mut one).unwrap();
+        assert_eq!(one, a);
+    }
 }
 
 proptest! {
@@ -237,11 +247,11 @@ proptest! {
         gs in vec(activity(), 30 * N_IN),
         as_ in vec(activity(), 30 * N_OUT),
     ) {
-        let mut association = association(eta, xi);
-        association.learn_batch(&gs, &as_).unwrap();
-        let bound = association.config().w_max.next_up();
+        let mut association = unlearnt();
+        association.learn(&CovarianceRule { eta, xi, ..PAPER }, &gs, &as_).unwrap();
+        let bound = PAPER.w_max.next_up();
         prop_assert!(association.weights().iter().all(|w| w.abs() <= bound));
-        prop_assert!(association.a_bar().iter().all(|bar| (0.0..=1.0).contains(bar)));
+        prop_assert!(association.a_mean().iter().all(|bar| (0.0..=1.0).contains(bar)));
     }
 
     /// Recall is max(tanh(Σ w g), 0), computed plainly in f64.
@@ -251,9 +261,7 @@ proptest! {
         w in vec(-0.2_f32..0.2, N_OUT * N_IN),
         g in vec(activity(), N_IN),
     ) {
-        let config = CovarianceConfig::default();
-        let parts = (vec![0.0; N_OUT], vec![0.0; N_IN]);
-        let association = Association::from_parts(&config, w.clone(), parts.0, parts.1).unwrap();
+        let association = Association::from_parts(&w, &[0.0; N_OUT], &[0.0; N_IN]).unwrap();
         let mut a = vec![f32::NAN; N_OUT];
         association.recall(&g, &mut a).unwrap();
         for (row, a_j) in w.chunks_exact(N_IN).zip(a) {

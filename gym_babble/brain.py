@@ -1,0 +1,383 @@
+"""Neural maps, associations, learning rules and pattern generators, for one's own experiments.
+
+    >>> import numpy as np
+    >>> from gym_babble import brain
+    >>> map_ = brain.PopulationMap(21, low=[0, 0], high=[1, 1])
+    >>> g = map_.encode([0.3, 0.6])
+    >>> g.shape
+    (441,)
+    >>> map_.read_out(g).round(2).tolist()
+    [0.3, 0.6]
+
+Symbols are those of Caligiore et al. (2008): g are activities of an input map, a those of an output
+map, w_ji the weight from input neuron i to output neuron j.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gym_babble import _core
+from gym_babble.errors import ConfigError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+__all__ = [
+    "RULES",
+    "Association",
+    "ConjunctiveMap",
+    "CovarianceRule",
+    "HebbRule",
+    "OjaRule",
+    "OwnRule",
+    "PopulationMap",
+    "RuleLike",
+    "TimeBaseGenerator",
+    "place",
+]
+
+T = TypeVar("T", bound=np.generic)
+
+Floats: TypeAlias = NDArray[np.float32]
+
+OwnRule: TypeAlias = Callable[[Floats, Floats, Floats, Floats, Floats, float, float], Any]
+"""A learning rule of one's own: `f(a, a_mean, g, g_mean, w, eta, w_max)` returns Δw.
+
+`a` and `a_mean` (n_out,) are the output's activities and their running averages, `g` and `g_mean`
+(n_in,) those of the input, `w` (n_out, n_in) the weights before the step, all float32; `eta` and
+`w_max` are the rule's numbers. Δw has the shape of `w`.
+"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class CovarianceRule:
+    """The paper's rule: Δw_ji = η (a_j − ā_j)(g_i − ḡ_i)(w_max − |w_ji|) (Eq. 7)."""
+
+    name: ClassVar[str] = "covariance"
+    eta: float = 1.0
+    """Learning rate η, 0 < η ≤ 1."""
+    w_max: float = 0.2
+    """Bound of the weights, > 0."""
+    xi: float = 0.2
+    """Share ξ of the old value in the running averages, 0 ≤ ξ < 1."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class HebbRule:
+    """Hebb's rule, which is Eq. 7 without the averages: Δw_ji = η a_j g_i (w_max − |w_ji|)."""
+
+    name: ClassVar[str] = "hebb"
+    eta: float = 1.0
+    """Learning rate η, 0 < η ≤ 1."""
+    w_max: float = 0.2
+    """Bound of the weights, > 0."""
+    xi: float = 0.2
+    """Share ξ of the old value in the running averages, which the rule does not use."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class OjaRule:
+    """Oja's rule, whose decay keeps weights finite: Δw_ji = η a_j (g_i − a_j w_ji)."""
+
+    name: ClassVar[str] = "oja"
+    eta: float = 0.1
+    """Learning rate η, 0 < η ≤ 1."""
+    xi: float = 0.2
+    """Share ξ of the old value in the running averages, which the rule does not use."""
+
+
+RULES = {rule.name: rule for rule in (CovarianceRule, HebbRule, OjaRule)}
+"""The rules of the core by name."""
+
+RuleLike: TypeAlias = str | CovarianceRule | HebbRule | OjaRule | OwnRule
+"""A rule by name, with numbers of its own, or a function (`OwnRule`)."""
+
+
+class PopulationMap:
+    """A grid of neurons with Gaussian tuning, for d numbers at once (Eq. 3 and 4).
+
+    Neurons stand evenly from `low` to `high`, ends included. The first axis runs fastest: with two
+    axes, neuron j stands in column j % n (first number) and row j // n (second number).
+
+    Args:
+        neurons: Neurons along each axis, or one number for all axes; at least 2.
+        low: Preferred value of the first neuron of each axis (d,).
+        high: Preferred value of the last neuron of each axis (d,).
+        sigma: Width σ of the tuning curves, in spacings of neurons; the paper's 0.7.
+
+    Raises:
+        ConfigError: An argument is out of its bounds, or of another number of axes.
+    """  # noqa: RUF002 - the paper's symbols
+
+    def __init__(
+        self,
+        neurons: int | ArrayLike,
+        low: ArrayLike,
+        high: ArrayLike,
+        sigma: float = 0.7,
+    ) -> None:
+        lows = np.atleast_1d(np.asarray(low, float)).tolist()
+        counts = np.broadcast_to(np.asarray(neurons), len(lows)).tolist()
+        highs = np.atleast_1d(np.asarray(high, float)).tolist()
+        self._core = _core.PopulationMap(counts, lows, highs, sigma)
+        self.shape: tuple[int, ...] = tuple(counts[::-1])
+        """Neurons along each axis, the last axis first: `g.reshape(map.shape)` is a picture of
+        g."""
+
+    def __len__(self) -> int:
+        """Number N of neurons."""
+        return len(self._core)
+
+    @property
+    def preferred(self) -> NDArray[np.float64]:
+        """Preferred values (N, d)."""
+        return self._core.preferred()
+
+    def encode(self, x: ArrayLike) -> Floats:
+        """Activities (N,) for a value (d,), or (n, N) for values (n, d) (Eq. 3).
+
+        g_j = exp(−|x_j − x|² / (2 σ²)), with lengths in spacings of neurons.
+        """
+        return _each(self._core.encode, x, np.float64)
+
+    def read_out(self, a: ArrayLike) -> NDArray[np.float64]:
+        """The mean (d,) of the preferred values, weighted with activities (N,) (Eq. 4).
+
+        For activities (n, N), values (n, d). A silent map reads its middle.
+        """
+        return _each(self._core.read_out, a, np.float32)
+
+    def read_out_peak(self, a: ArrayLike, radius: int = 2) -> NDArray[np.float64]:
+        """The same over the neurons at most `radius` places from the strongest one.
+
+        Of two peaks it reads the stronger, where the mean would lie between them.
+        """
+        return _each(lambda a: self._core.read_out(a, radius), a, np.float32)
+
+
+class ConjunctiveMap:
+    """All pairs of the neurons of two maps, each the product of their activities.
+
+    Goes beyond the paper. The activities of all pairs sum to one. Neuron j pairs neuron j % n of
+    `inner`, which has n neurons, with neuron j // n of `outer`.
+    """
+
+    def __init__(self, inner: PopulationMap, outer: PopulationMap) -> None:
+        self._core = _core.ConjunctiveMap(inner._core, outer._core)  # noqa: SLF001 - of this module
+        self.shape: tuple[int, ...] = (*outer.shape, *inner.shape)
+        """Neurons along each axis, those of `outer` first."""
+
+    def __len__(self) -> int:
+        """Number N of pairs."""
+        return len(self._core)
+
+    def encode(self, inner: ArrayLike, outer: ArrayLike) -> Floats:
+        """Activities (N,) for a value of each map, or (n, N) for n values of each."""
+        second = np.atleast_2d(np.asarray(outer, np.float64))
+        return _each(lambda x: self._core.encode(x, second), inner, np.float64)
+
+
+class Association:
+    """All-to-all connections between two maps, learnt by a rule.
+
+    Args:
+        n_in: Neurons of the input map.
+        n_out: Neurons of the output map.
+        rule: A rule of this module, its name, or a function of one's own (see `OwnRule`).
+        numbers: `eta`, `w_max` and `xi`, where they differ from the rule's; a function is given
+            η = 1, w_max = 0.2 and averages with ξ = 0.2.
+        threads: Threads that learn; the bits do not depend on them.
+
+    Raises:
+        ConfigError: An argument is out of its bounds.
+    """
+
+    def __init__(
+        self,
+        n_in: int,
+        n_out: int,
+        rule: RuleLike = "covariance",
+        *,
+        threads: int = 1,
+        **numbers: float,
+    ) -> None:
+        self._core = _core.Association(n_in, n_out)
+        self._own: Any = rule if is_own(rule) else None
+        self._numbers = rule_numbers(rule)
+        for name, value in numbers.items():
+            if name not in self._numbers:
+                raise ConfigError(f"{name}: the rule has {', '.join(self._numbers)}")
+            if not np.isfinite(value):
+                raise ConfigError(f"{name} = {value} is not finite")
+            self._numbers[name] = value
+        self._threads = threads
+
+    def learn(self, g: ArrayLike, a: ArrayLike) -> None:
+        """Learns from activities g (n_in,) and a (n_out,), or from m of each in their order.
+
+        For each, the weights change by the rule, and then the averages move on:
+        ā_j ← ξ ā_j + (1 − ξ) a_j, and so ḡ_i.
+
+        Raises:
+            ConfigError: Activities of another shape or outside of [0, 1], or what a function of
+                one's own returns is no Δw. Nothing is learnt then.
+        """
+        gs = np.atleast_2d(np.asarray(g, np.float32))
+        as_ = np.atleast_2d(np.asarray(a, np.float32))
+        if self._own is None:
+            self._core.learn(json.dumps(self._numbers), gs, as_, self._threads)
+            return
+        taught = teach(self._own, self._numbers)(self.weights, self.a_mean, self.g_mean, gs, as_)
+        weights, a_mean, g_mean = taught
+        self._core.set_weights(weights)
+        self._core.set_means(a_mean, g_mean)
+
+    def recall(self, g: ArrayLike) -> Floats:
+        """Activities a_j = max(tanh(Σ_i w_ji g_i), 0) that activities g call up.
+
+        (n_out,) for g (n_in,), or (m, n_out) for g (m, n_in).
+        """
+        return _each(self._core.recall, g, np.float32)
+
+    @property
+    def weights(self) -> Floats:
+        """A copy of the weights w_ji (n_out, n_in); assign to set them."""
+        return self._core.weights()
+
+    @weights.setter
+    def weights(self, weights: ArrayLike) -> None:
+        self._core.set_weights(np.asarray(weights, np.float32))
+
+    @property
+    def a_mean(self) -> Floats:
+        """A copy of the running averages ā of the output (n_out,); assign to set them."""
+        return self._core.means()[0]
+
+    @a_mean.setter
+    def a_mean(self, a_mean: ArrayLike) -> None:
+        self._core.set_means(np.asarray(a_mean, np.float32), self.g_mean)
+
+    @property
+    def g_mean(self) -> Floats:
+        """A copy of the running averages ḡ of the input (n_in,); assign to set them."""
+        return self._core.means()[1]
+
+    @g_mean.setter
+    def g_mean(self, g_mean: ArrayLike) -> None:
+        self._core.set_means(self.a_mean, np.asarray(g_mean, np.float32))
+
+
+class TimeBaseGenerator:
+    """Two time base generators with mirrored parameters, which draw one curved movement (Eq. 5).
+
+    ċx = γ cx^b1 (1 − cx)^b2 and ċy = γ cy^b2 (1 − cy)^b1, from (0, 0) to (1, 1). With b2 = 1 − b1,
+    b1 > ½ curves to the left of the straight line.
+
+    Args:
+        b1: Parameter of cx, between 0 and 1.
+        b2: Parameter of cy, between 0 and 1.
+    """  # noqa: RUF002 - the paper's symbols
+
+    def __init__(self, b1: float, b2: float) -> None:
+        self.b1, self.b2 = b1, b2
+        self.curve(1)
+
+    def curve(self, n: int) -> NDArray[np.float64]:
+        """(cx, cy) at the times k T/n, k = 0 … n (n + 1, 2); T is the duration of the movement.
+
+        Raises:
+            ConfigError: A parameter is outside of (0, 1).
+        """
+        return _core.generator_curve(self.b1, self.b2, n)
+
+
+def place(start: ArrayLike, target: ArrayLike, curve: ArrayLike) -> NDArray[np.float64]:
+    """A curve (n, 2) of a generator, moved, turned and scaled between two points (n, 2) (Eq. 6).
+
+    Args:
+        start: Where (0, 0) comes to lie (2,), in any unit of length.
+        target: Where (1, 1) comes to lie (2,).
+        curve: The curve.
+    """
+    (x0, y0), (x1, y1) = np.asarray(start, float).tolist(), np.asarray(target, float).tolist()
+    return _core.place_curve((x0, y0), (x1, y1), np.asarray(curve, float))
+
+
+def is_own(rule: Any) -> bool:
+    """Whether a rule is a function of one's own."""
+    return callable(rule) and not isinstance(rule, type)
+
+
+def rule_numbers(rule: Any) -> dict[str, Any]:
+    """The name and numbers of a rule of the core, or the numbers that a function is given.
+
+    Raises:
+        ConfigError: There is no such rule.
+    """
+    if is_own(rule):
+        return dict(json.loads(_core.rule_json()))
+    if isinstance(rule, str):
+        return dict(json.loads(_core.rule_json(rule)))
+    if isinstance(rule, CovarianceRule | HebbRule | OjaRule):
+        return {"name": rule.name, **asdict(rule)}
+    raise ConfigError(
+        f"rule = {rule!r} is not a function, a rule of gym_babble.brain, or one of "
+        f"{', '.join(RULES)}"
+    )
+
+
+def teach(
+    rule: OwnRule, numbers: dict[str, Any]
+) -> Callable[[Floats, Floats, Floats, Floats, Floats], tuple[Floats, Floats, Floats]]:
+    """A function that learns m movements, one after the other, by a rule of one's own.
+
+    It takes weights (n_out, n_in), averages ā (n_out,) and ḡ (n_in,), and activities g (m, n_in)
+    and a (m, n_out); it returns the first three as they are after the movements.
+    """
+    eta, w_max = float(numbers["eta"]), float(numbers["w_max"])
+    xi = np.float32(numbers["xi"])
+
+    def learn(
+        w: Floats, a_mean: Floats, g_mean: Floats, gs: Floats, as_: Floats
+    ) -> tuple[Floats, Floats, Floats]:
+        if len(gs) != len(as_) or gs.shape[1:] != g_mean.shape or as_.shape[1:] != a_mean.shape:
+            raise ConfigError(
+                f"activities have shapes {gs.shape} and {as_.shape}, "
+                f"expected (m, {len(g_mean)}) and (m, {len(a_mean)})"
+            )
+        for g, a in zip(gs, as_, strict=True):
+            for array in (w, a_mean, g_mean, g, a):
+                array.setflags(write=False)  # A rule returns the change and makes none.
+            change = np.asarray(rule(a, a_mean, g, g_mean, w, eta, w_max))
+            _check_change(change, w)
+            w = w + change.astype(np.float32)
+            a_mean = xi * a_mean + (1 - xi) * a
+            g_mean = xi * g_mean + (1 - xi) * g
+        return w, a_mean, g_mean
+
+    return learn
+
+
+def _check_change(change: NDArray[Any], w: Floats) -> None:
+    if change.shape != w.shape:
+        raise ConfigError(f"rule: Δw has shape {change.shape}, expected {w.shape}")
+    if change.dtype.kind not in "fiu":
+        raise ConfigError(f"rule: Δw is made of {change.dtype}, expected numbers")
+    if not np.isfinite(change).all():
+        j, i = np.argwhere(~np.isfinite(change))[0]
+        raise ConfigError(f"rule: Δw[{j}, {i}] = {change[j, i]} is not finite")
+
+
+def _each(function: Callable[[Any], NDArray[T]], values: ArrayLike, kind: Any) -> NDArray[T]:
+    """A function of a batch, of one value or of a batch."""
+    array = np.asarray(values, kind)
+    found = function(np.ascontiguousarray(np.atleast_2d(array)))
+    row: NDArray[T] = found if array.ndim > 1 else found[0]
+    return row

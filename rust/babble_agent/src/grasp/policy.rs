@@ -1,0 +1,201 @@
+//! Agents that choose what posture to reach and to grasp with, and how they act in each control.
+
+use std::fmt;
+use std::sync::Arc;
+
+use babble_env::tasks::grasp::FOVEA_NEURONS;
+use babble_env::{Control, Executor, GraspTask, Task};
+
+use crate::error::AgentError;
+use crate::policy::{Grasp, Plan, Policy, Random};
+
+/// Where the senses stand in a flat observation: eye, fovea, arm and hand, stretch, touch.
+const FOVEA: usize = 2;
+const POSTURE: usize = FOVEA + FOVEA_NEURONS;
+const STRETCH: usize = POSTURE + 4;
+const TOUCH: usize = STRETCH + 4;
+
+/// What an agent sees at the beginning of an episode.
+#[derive(Debug, Clone, Copy)]
+pub struct Sight<'a> {
+    /// Pan and tilt on the object, over their ranges.
+    pub eye: [f32; 2],
+    /// Edges in the fovea.
+    pub fovea: &'a [f32],
+    /// Shoulder, elbow, thumb and finger, over their ranges.
+    pub posture: [f32; 4],
+}
+
+/// How an agent chooses a grasp.
+pub trait ChooseGrasp: fmt::Debug + Send + Sync {
+    /// The grasp for what is seen.
+    ///
+    /// # Errors
+    /// [`AgentError`] for percepts that are no activities.
+    fn choose(&self, task: &GraspTask, sight: &Sight<'_>) -> Result<Grasp, AgentError>;
+}
+
+/// Goes straight to where the palm meets the object, and closes as the reflex does.
+///
+/// It knows the arm's geometry and the eye's: where the eye looks the object is. The fovea's edges,
+/// which tell the size, it does not read: it aims the palm's surface at the object's middle, and the
+/// hand stops where it touches.
+#[derive(Debug, Clone, Copy)]
+pub struct Scripted;
+
+impl ChooseGrasp for Scripted {
+    fn choose(&self, task: &GraspTask, sight: &Sight<'_>) -> Result<Grasp, AgentError> {
+        let gaze = task.eye.from_normalised(sight.eye.map(f64::from));
+        let point = task.eye.target_in_plane(gaze, 0.0);
+        let arm = point.and_then(|object| task.grasp_posture(object, 0.0));
+        let ranges = task.robot.ranges();
+        let middle = [0, 1].map(|i| f64::midpoint(ranges[i][0], ranges[i][1]));
+        Ok(Grasp::straight(arm.unwrap_or(middle), task.reflex()))
+    }
+}
+
+impl<C: ChooseGrasp> ChooseGrasp for &C {
+    fn choose(&self, task: &GraspTask, sight: &Sight<'_>) -> Result<Grasp, AgentError> {
+        (*self).choose(task, sight)
+    }
+}
+
+/// An agent that chooses once what posture to reach and to grasp with (Sect. IV).
+///
+/// The arm moves there at once, with the hand open; the hand closes when it touches the object.
+#[derive(Debug)]
+pub struct GraspPolicy<C> {
+    task: Arc<GraspTask>,
+    choice: C,
+}
+
+impl<C: ChooseGrasp> GraspPolicy<C> {
+    /// An agent for a task.
+    ///
+    /// # Errors
+    /// [`AgentError::Config`] for `torque` control, in which there are no postures to plan.
+    pub fn new(task: Arc<GraspTask>, choice: C) -> Result<Self, AgentError> {
+        if task.options.control == Control::Torque {
+            return Err(AgentError::Config {
+                field: "control",
+                problem: "'torque': this agent plans postures; use posture or delta_posture"
+                    .to_owned(),
+            });
+        }
+        Ok(Self { task, choice })
+    }
+
+    /// The grasp for each flat observation of `senses`.
+    fn choose(&self, senses: &[f32], executor: &mut Executor) -> Result<Vec<Grasp>, AgentError> {
+        let width = self.task.senses_len();
+        let choose = |senses: &[f32]| {
+            let sight = Sight {
+                eye: [senses[0], senses[1]],
+                fovea: &senses[FOVEA..POSTURE],
+                posture: std::array::from_fn(|i| senses[POSTURE + i]),
+            };
+            self.choice.choose(&self.task, &sight)
+        };
+        if senses.len() == width {
+            return Ok(vec![choose(senses)?]);
+        }
+        executor.map(0..senses.len() / width, |i| {
+            choose(&senses[i * width..][..width])
+        })
+    }
+
+    /// The action of a posture \[rad\] that the equilibrium points are to take.
+    fn towards(&self, wanted: [f64; 4], senses: &[f32], action: &mut [f32]) {
+        let unit = self.task.config.grasp.delta_posture_deg.to_radians();
+        for (i, &[low, high]) in self.task.robot.ranges().iter().enumerate() {
+            let asked = if self.task.options.control == Control::Posture {
+                2.0 * (wanted[i] - low) / (high - low) - 1.0
+            } else {
+                // The equilibrium point is angle plus stretch.
+                let angle = low + f64::from(senses[POSTURE + i]) * (high - low);
+                (wanted[i] - (angle + f64::from(senses[STRETCH + i]))) / unit
+            };
+            action[i] = asked.clamp(-1.0, 1.0) as f32;
+        }
+    }
+}
+
+impl<C: ChooseGrasp> Policy for GraspPolicy<C> {
+    fn senses_len(&self) -> usize {
+        self.task.senses_len()
+    }
+
+    fn action_len(&self) -> usize {
+        4
+    }
+
+    fn plan(&self, senses: &[f32], executor: &mut Executor) -> Result<Vec<Plan>, AgentError> {
+        let chosen = self.choose(senses, executor)?;
+        Ok(chosen.into_iter().map(Plan::Grasp).collect())
+    }
+
+    fn decide(&self, senses: &[f32], executor: &mut Executor) -> Result<Vec<Vec<f64>>, AgentError> {
+        let chosen = self.choose(senses, executor)?;
+        Ok(chosen.iter().map(|grasp| grasp.posture.to_vec()).collect())
+    }
+
+    fn act(&self, plan: &mut Plan, senses: &[f32], action: &mut [f32]) {
+        let Plan::Grasp(grasp) = plan else {
+            return action.fill(0.0);
+        };
+        grasp.touched |= senses[TOUCH..TOUCH + 3].iter().any(|&force| force > 0.0);
+        let mut wanted = grasp.posture;
+        if !grasp.touched {
+            let ranges = self.task.robot.ranges();
+            wanted[2..].copy_from_slice(&[ranges[2][0], ranges[3][0]]);
+            wanted[..2].copy_from_slice(&grasp.arm());
+        }
+        grasp.step += 1;
+        self.towards(wanted, senses, action);
+    }
+}
+
+/// An agent that draws each action uniformly from [−1, 1]⁴, whatever it sees.
+#[derive(Debug)]
+pub struct RandomActions<'a> {
+    task: Arc<GraspTask>,
+    random: &'a Random,
+}
+
+impl<'a> RandomActions<'a> {
+    /// An agent for a task, which goes on with the choices of `random`.
+    #[must_use]
+    pub const fn new(task: Arc<GraspTask>, random: &'a Random) -> Self {
+        Self { task, random }
+    }
+}
+
+impl Policy for RandomActions<'_> {
+    fn senses_len(&self) -> usize {
+        self.task.senses_len()
+    }
+
+    fn action_len(&self) -> usize {
+        4
+    }
+
+    fn plan(&self, senses: &[f32], _executor: &mut Executor) -> Result<Vec<Plan>, AgentError> {
+        Ok(vec![Plan::Steps; senses.len() / self.senses_len()])
+    }
+
+    fn decide(
+        &self,
+        _senses: &[f32],
+        _executor: &mut Executor,
+    ) -> Result<Vec<Vec<f64>>, AgentError> {
+        Err(AgentError::Config {
+            field: "agent",
+            problem: "the random agent of grasping decides each step by itself".to_owned(),
+        })
+    }
+
+    fn act(&self, _plan: &mut Plan, _senses: &[f32], action: &mut [f32]) {
+        let mut stream = self.random.next();
+        action.fill_with(|| stream.uniform(-1.0, 1.0) as f32);
+    }
+}

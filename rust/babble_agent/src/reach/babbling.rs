@@ -1,0 +1,108 @@
+//! Babbled movements: a random case, and a random movement in it (Sect. III-A).
+
+use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
+use babble_env::{EnvError, Outcome, ReachCase, ReachTask, Stream};
+use serde::{Deserialize, Serialize};
+
+use crate::babbling::{Babble, Column, ColumnKind};
+
+/// What a movement leaves behind: percepts as the environment's senses give them, and what was done.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Experience {
+    /// Pan and tilt on the target, over their ranges.
+    pub eye: [f32; 2],
+    /// Angles of the obstacle in the camera frame \[rad\].
+    pub obstacle: [f32; 2],
+    /// Parameters (b1, b2) of the movement.
+    pub b: [f32; 2],
+    /// How it ended.
+    pub outcome: Outcome,
+}
+
+impl Experience {
+    /// Whether it neither touched the obstacle nor left the joint ranges.
+    #[must_use]
+    pub fn is_legal(&self) -> bool {
+        !matches!(self.outcome, Outcome::Collision | Outcome::JointLimit)
+    }
+}
+
+/// How movements are simulated while babbling.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ReachBabbling {
+    /// Without the muscles' lag: faster, and less like the paper.
+    pub quasi_static: bool,
+}
+
+impl ReachBabbling {
+    const fn fidelity(self) -> Fidelity {
+        if self.quasi_static {
+            Fidelity::QuasiStatic
+        } else {
+            Fidelity::Full
+        }
+    }
+}
+
+impl Babble for ReachTask {
+    type Options = ReachBabbling;
+    type Experience = Experience;
+
+    const TRIES: usize = 5;
+    const RAREST: u64 = 100_000;
+
+    /// A random case, b1 uniform in its range and b2 = 1 − b1.
+    fn babble(
+        &self,
+        options: ReachBabbling,
+        stream: &mut Stream,
+        all: bool,
+    ) -> Result<Option<Experience>, EnvError> {
+        let case = ReachCase::draw_geometry(self, stream)?;
+        let [low, high] = self.config.reach.b_range;
+        let b1 = stream.uniform(low, high);
+        let b = [b1, 1.0 - b1];
+        let path = MovementPath::new(self, &case, b)?;
+        let whole = path.postures().len() == self.config.reach.movement_steps();
+        if !whole && !all {
+            return Ok(None);
+        }
+        let played = path.play(self, &case, options.fidelity(), |_| {});
+        let mut experience = Experience {
+            eye: [0.0; 2],
+            obstacle: [0.0; 2],
+            b: b.map(|x| x as f32),
+            outcome: played.outcome,
+        };
+        if !experience.is_legal() && !all {
+            return Ok(None);
+        }
+        let gaze = self.foveate(&case)?;
+        let camera = self.eye.camera(gaze);
+        let single = |x: [f64; 2]| x.map(|x| x as f32);
+        experience.eye = single(self.eye.normalised(gaze));
+        experience.obstacle = single(Self::obstacle_angles(&camera, case.obstacle.as_ref()));
+        Ok(Some(experience))
+    }
+
+    fn babble_steps(&self) -> usize {
+        self.config.reach.movement_steps() + self.settle_steps()
+    }
+
+    fn is_learnable(experience: &Experience) -> bool {
+        experience.is_legal()
+    }
+
+    fn outcome(experience: &Experience) -> Outcome {
+        experience.outcome
+    }
+
+    fn columns(all: &[Experience]) -> Vec<Column> {
+        vec![
+            Column::of("eye", ColumnKind::Percept, all, |e| e.eye),
+            Column::of("obstacle", ColumnKind::Percept, all, |e| e.obstacle),
+            Column::of("b", ColumnKind::Action, all, |e| e.b),
+        ]
+    }
+}

@@ -1,0 +1,336 @@
+//! Networks that learn by babbling, and what babbles leave behind.
+
+use babble_agent::AgentError;
+use babble_agent::babbling::ColumnKind;
+use babble_agent::erased::{self, AnyLearner};
+use babble_brain::Association;
+use babble_env::{Config, Executor};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use serde_json::Value;
+
+use crate::guarded::Guarded;
+use crate::policy::{Plans, act};
+use crate::task::Task;
+use crate::{convert, errors, signals};
+
+/// Weights, and running averages of output and input.
+type Parts<'py> = (
+    Bound<'py, PyArray2<f32>>,
+    Bound<'py, PyArray1<f32>>,
+    Bound<'py, PyArray1<f32>>,
+);
+/// The same, as a rule of one's own returns them.
+type Learnt<'py> = (
+    PyReadonlyArray2<'py, f32>,
+    PyReadonlyArray1<'py, f32>,
+    PyReadonlyArray1<'py, f32>,
+);
+
+/// A network that learns by babbling. In `with learner:` no other thread can use it.
+#[pyclass(frozen, module = "gym_babble._core")]
+#[derive(Debug)]
+pub(crate) struct Learner {
+    inner: Guarded<Inner>,
+}
+
+/// What learning changes.
+#[derive(Debug)]
+struct Inner {
+    learner: Box<dyn AnyLearner>,
+    executor: Executor,
+}
+
+#[pymethods]
+impl Learner {
+    /// A network that has learnt nothing, for a task of that name; `brain` (complete) and `babbling`
+    /// are JSON.
+    #[new]
+    fn new(task: &str, brain: &str, seed: u64, babbling: &str, threads: usize) -> PyResult<Self> {
+        let (brain, babbling) = (value("brain", brain)?, value("babbling", babbling)?);
+        let learner = erased::learner(task, brain, seed, babbling).map_err(errors::agent)?;
+        Self::of(learner, threads)
+    }
+
+    /// The learner in the bytes of a safetensors file, and the JSON of the config it babbled with.
+    #[staticmethod]
+    fn load(bytes: &[u8], threads: usize) -> PyResult<(Self, String)> {
+        let (learner, config) = erased::load(bytes).map_err(errors::agent)?;
+        let config = config.to_json().map_err(errors::env)?;
+        Ok((Self::of(learner, threads)?, config))
+    }
+
+    fn __enter__(&self) -> PyResult<()> {
+        self.inner.enter()
+    }
+
+    fn __exit__(
+        &self,
+        _type: &Bound<'_, PyAny>,
+        _raised: &Bound<'_, PyAny>,
+        _at: &Bound<'_, PyAny>,
+    ) {
+        self.inner.leave();
+    }
+
+    /// Name of its task.
+    fn task(&self) -> PyResult<&'static str> {
+        Ok(self.inner.read()?.learner.task())
+    }
+
+    /// Numbers of maps and rule, as JSON.
+    fn brain(&self) -> PyResult<String> {
+        let brain = self.inner.read()?.learner.brain();
+        convert::json(&brain.map_err(errors::agent)?)
+    }
+
+    /// How it babbles, as JSON.
+    fn babbling(&self) -> PyResult<String> {
+        let options = self.inner.read()?.learner.options();
+        convert::json(&options.map_err(errors::agent)?)
+    }
+
+    /// Seed of the babbling, babbles made, and how many of them were learnt from.
+    fn counts(&self) -> PyResult<(u64, u64, u64)> {
+        let learner = &self.inner.read()?.learner;
+        Ok((learner.seed(), learner.babbled(), learner.learnt()))
+    }
+
+    /// Babbles on `task` until `n` more babbles can be learnt from, and learns from them; interrupted,
+    /// it has done neither. `rule(w, a_mean, g_mean, g, a)` returns the first three after g and a.
+    #[pyo3(signature = (task, n, rule=None))]
+    fn learn(
+        &self,
+        py: Python<'_>,
+        task: &Task,
+        n: usize,
+        rule: Option<Py<PyAny>>,
+    ) -> PyResult<()> {
+        let Inner { learner, executor } = &mut *self.inner.write()?;
+        let Some(rule) = rule else {
+            return py
+                .detach(|| learner.learn(&task.task, n, executor))
+                .map_err(errors::agent);
+        };
+        let mut raised = None;
+        let mut teach = |association: &mut Association, g: &[f32], a: &[f32]| {
+            let taught = Python::attach(|py| apply(rule.bind(py), association, g, a));
+            taught.map_err(|error| {
+                raised = Some(error);
+                AgentError::Rule {
+                    problem: "it raised an exception".to_owned(),
+                }
+            })
+        };
+        let learnt = py.detach(|| learner.learn_by(&mut teach, &task.task, n, executor));
+        learnt.map_err(|error| raised.unwrap_or_else(|| errors::agent(error)))
+    }
+
+    /// Actions (n, k) for flat senses (n, m) of a task, and the plans for the next call.
+    fn predict<'py>(
+        &self,
+        py: Python<'py>,
+        task: &Task,
+        senses: PyReadonlyArray2<'py, f32>,
+        starts: Vec<bool>,
+        plans: Option<&Plans>,
+    ) -> PyResult<(Bound<'py, PyArray2<f32>>, Plans)> {
+        let inner = self.inner.read()?;
+        let policy = inner.learner.policy(&task.task).map_err(errors::agent)?;
+        act(py, &*policy, &senses, &starts, plans, 1)
+    }
+
+    /// Checks that it can act in a task.
+    fn check(&self, task: &Task) -> PyResult<()> {
+        let inner = self.inner.read()?;
+        let policy = inner.learner.policy(&task.task);
+        policy.map(|_| ()).map_err(errors::agent)
+    }
+
+    /// What its maps are read out as (n, k), for flat senses (n, m).
+    fn decide<'py>(
+        &self,
+        py: Python<'py>,
+        senses: PyReadonlyArray2<'py, f32>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let senses: Vec<Vec<f32>> = senses
+            .as_array()
+            .rows()
+            .into_iter()
+            .map(|row| row.to_vec())
+            .collect();
+        let learner = &self.inner.read()?.learner;
+        let decided = py
+            .detach(|| {
+                let each = senses.iter().map(|senses| learner.decide(senses));
+                each.collect::<Result<Vec<_>, _>>()
+            })
+            .map_err(errors::agent)?;
+        let width = decided.first().map_or(0, Vec::len);
+        convert::table(py, width, decided.iter().map(Vec::as_slice))
+    }
+
+    /// Activities (side, side) of the output maps by name, rows the second value, for flat senses (m,).
+    fn recall<'py>(
+        &self,
+        py: Python<'py>,
+        senses: PyReadonlyArray1<'py, f32>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let senses = senses.as_array().to_vec();
+        let learner = &self.inner.read()?.learner;
+        let dict = PyDict::new(py);
+        for recall in learner.recall(&senses).map_err(errors::agent)? {
+            let activity = PyArray1::from_vec(py, recall.activity);
+            dict.set_item(recall.name, activity.reshape([recall.side; 2])?)?;
+        }
+        Ok(dict)
+    }
+
+    /// The weights `w_ji` (outputs, inputs) and the running averages by name, as copies.
+    fn weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let learner = &self.inner.read()?.learner;
+        let dict = PyDict::new(py);
+        for (prefix, association) in learner.associations() {
+            let (weights, a_mean, g_mean) = parts(py, association)?;
+            dict.set_item(format!("{prefix}weights"), weights)?;
+            dict.set_item(format!("{prefix}a_mean"), a_mean)?;
+            dict.set_item(format!("{prefix}g_mean"), g_mean)?;
+        }
+        Ok(dict)
+    }
+
+    /// Sets weights and running averages of the association at a place.
+    fn set(
+        &self,
+        association: usize,
+        weights: PyReadonlyArray2<'_, f32>,
+        a_mean: PyReadonlyArray1<'_, f32>,
+        g_mean: PyReadonlyArray1<'_, f32>,
+    ) -> PyResult<()> {
+        let learner = &mut self.inner.write()?.learner;
+        let [a_mean, g_mean] = [a_mean, g_mean].map(|mean| mean.as_array().to_vec());
+        convert::check_width(weights.as_array().shape(), g_mean.len(), "weights")?;
+        let weights: Vec<f32> = weights.as_array().iter().copied().collect();
+        learner
+            .set(association, &weights, &a_mean, &g_mean)
+            .map_err(errors::agent)
+    }
+
+    /// What the names of each association's weights begin with, in their order.
+    fn prefixes(&self) -> PyResult<Vec<&'static str>> {
+        let learner = &self.inner.read()?.learner;
+        Ok(learner
+            .associations()
+            .iter()
+            .map(|(name, _)| *name)
+            .collect())
+    }
+
+    /// Neurons along the axes of the input map of each association.
+    fn input_shapes(&self) -> PyResult<Vec<Vec<usize>>> {
+        Ok(self.inner.read()?.learner.input_shapes())
+    }
+
+    /// The learner as the bytes of a safetensors file; `config` is the JSON of body and task.
+    fn save<'py>(&self, py: Python<'py>, config: &str) -> PyResult<Bound<'py, PyBytes>> {
+        let config = Config::from_json(config).map_err(errors::env)?;
+        let bytes = self.inner.read()?.learner.save(config);
+        Ok(PyBytes::new(py, &bytes.map_err(errors::agent)?))
+    }
+}
+
+impl Learner {
+    fn of(learner: Box<dyn AnyLearner>, threads: usize) -> PyResult<Self> {
+        let executor = signals::executor(threads).map_err(errors::env)?;
+        Ok(Self {
+            inner: Guarded::new("agent", Inner { learner, executor }),
+        })
+    }
+}
+
+/// The numbers of a variant of a task's network, as JSON.
+#[pyfunction]
+pub(crate) fn brain_json(task: &str, variant: &str) -> PyResult<String> {
+    convert::json(&erased::brain_of(task, variant).map_err(errors::agent)?)
+}
+
+/// Control steps that a babble takes.
+#[pyfunction]
+pub(crate) fn babble_steps(task: &Task) -> PyResult<usize> {
+    erased::babble_steps(&task.task).map_err(errors::agent)
+}
+
+/// The first `n` babbles of a seed: percepts, actions and parts of the case by name, which babbles can
+/// be learnt from, and the codes of their outcomes.
+#[pyfunction]
+pub(crate) fn babble<'py>(
+    py: Python<'py>,
+    task: &Task,
+    n: usize,
+    seed: u64,
+    babbling: &str,
+    threads: usize,
+) -> PyResult<Bound<'py, PyDict>> {
+    let options = value("babbling", babbling)?;
+    let found = py
+        .detach(|| {
+            let executor = &mut signals::executor(threads)?;
+            erased::babble_any(&task.task, n, seed, options, executor)
+        })
+        .map_err(errors::agent)?;
+    let kinds = ["percepts", "actions", "case"].map(|name| (name, PyDict::new(py)));
+    for column in found.columns {
+        let kind = match column.kind {
+            ColumnKind::Percept => 0,
+            ColumnKind::Action => 1,
+            ColumnKind::Case => 2,
+        };
+        let values = PyArray1::from_vec(py, column.values).reshape([n, column.width])?;
+        kinds[kind].1.set_item(column.name, values)?;
+    }
+    let dict = PyDict::new(py);
+    for (name, columns) in kinds {
+        dict.set_item(name, columns)?;
+    }
+    dict.set_item("learnable", PyArray1::from_vec(py, found.learnable))?;
+    let outcomes = found.outcomes.iter().map(|&outcome| outcome as usize);
+    dict.set_item("outcome", PyArray1::from_vec(py, outcomes.collect()))?;
+    Ok(dict)
+}
+
+fn value(what: &str, json: &str) -> PyResult<Value> {
+    serde_json::from_str(json)
+        .map_err(|error| errors::ConfigError::new_err(format!("{what}: {error}")))
+}
+
+fn parts<'py>(py: Python<'py>, association: &Association) -> PyResult<Parts<'py>> {
+    let weights = PyArray1::from_slice(py, association.weights());
+    Ok((
+        weights.reshape([association.n_out(), association.n_in()])?,
+        PyArray1::from_slice(py, association.a_mean()),
+        PyArray1::from_slice(py, association.g_mean()),
+    ))
+}
+
+/// Lets a rule of the user's own change an association.
+fn apply(
+    rule: &Bound<'_, PyAny>,
+    association: &mut Association,
+    g: &[f32],
+    a: &[f32],
+) -> PyResult<()> {
+    let py = rule.py();
+    let (n_in, n_out) = (association.n_in(), association.n_out());
+    let g = PyArray1::from_slice(py, g).reshape([g.len() / n_in, n_in])?;
+    let a = PyArray1::from_slice(py, a).reshape([a.len() / n_out, n_out])?;
+    let (weights, a_mean, g_mean) = parts(py, association)?;
+    let learnt = rule.call1((weights, a_mean, g_mean, g, a))?;
+    let (weights, a_mean, g_mean): Learnt<'_> = learnt.extract()?;
+    let weights: Vec<f32> = weights.as_array().iter().copied().collect();
+    let [a_mean, g_mean] = [a_mean, g_mean].map(|mean| mean.as_array().to_vec());
+    association.set_weights(&weights).map_err(errors::brain)?;
+    association
+        .set_means(&a_mean, &g_mean)
+        .map_err(errors::brain)
+}

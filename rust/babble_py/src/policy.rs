@@ -1,0 +1,147 @@
+//! Agents that act: plans under way, and those that need no learning.
+
+use babble_agent::{Plan, Policy, Random, predict, reference};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
+use pyo3::prelude::*;
+
+use crate::task::Task;
+use crate::{convert, errors, signals};
+
+/// What an agent is doing in each of n environments.
+#[pyclass(frozen, module = "gym_babble._core")]
+#[derive(Debug)]
+pub(crate) struct Plans {
+    plans: Vec<Plan>,
+}
+
+#[pymethods]
+impl Plans {
+    /// In how many environments.
+    fn __len__(&self) -> usize {
+        self.plans.len()
+    }
+
+    /// Steps made of each plan that is a movement (n,); 0 for others.
+    fn steps<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<usize>> {
+        let steps = self.plans.iter().map(|plan| match plan {
+            Plan::Trajectory { step, .. } => *step,
+            _ => 0,
+        });
+        PyArray1::from_vec(py, steps.collect())
+    }
+
+    /// Whether the hand has touched the object, in each grasp (n,); False for other plans.
+    fn touched<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
+        let touched = self.plans.iter().map(|plan| match plan {
+            Plan::Grasp(grasp) => grasp.touched,
+            _ => false,
+        });
+        PyArray1::from_vec(py, touched.collect())
+    }
+}
+
+/// Actions (n, k) of a policy for flat senses (n, m), and the plans for the next call.
+pub(crate) fn act<'py>(
+    py: Python<'py>,
+    policy: &dyn Policy,
+    senses: &PyReadonlyArray2<'py, f32>,
+    starts: &[bool],
+    plans: Option<&Plans>,
+    threads: usize,
+) -> PyResult<(Bound<'py, PyArray2<f32>>, Plans)> {
+    convert::check_width(senses.as_array().shape(), policy.senses_len(), "senses")?;
+    let senses: Vec<f32> = senses.as_array().iter().copied().collect();
+    let mut plans = plans.map_or_else(Vec::new, |plans| plans.plans.clone());
+    let actions = py
+        .detach(|| {
+            let executor = &mut signals::executor(threads)?;
+            predict(policy, &senses, starts, &mut plans, executor)
+        })
+        .map_err(errors::agent)?;
+    let actions = PyArray1::from_vec(py, actions).reshape([plans.len(), policy.action_len()])?;
+    Ok((actions, Plans { plans }))
+}
+
+/// What a policy decides (n, k) for flat senses (n, m).
+pub(crate) fn decide<'py>(
+    py: Python<'py>,
+    policy: &dyn Policy,
+    senses: &PyReadonlyArray2<'py, f32>,
+    threads: usize,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    convert::check_width(senses.as_array().shape(), policy.senses_len(), "senses")?;
+    let senses: Vec<f32> = senses.as_array().iter().copied().collect();
+    let decided = py
+        .detach(|| policy.decide(&senses, &mut signals::executor(threads)?))
+        .map_err(errors::agent)?;
+    let width = decided.first().map_or(0, Vec::len);
+    convert::table(py, width, decided.iter().map(Vec::as_slice))
+}
+
+/// An agent that needs no learning, by name: "random", "scripted" or "oracle".
+#[pyclass(frozen, module = "gym_babble._core")]
+#[derive(Debug)]
+pub(crate) struct Reference {
+    name: String,
+    random: Random,
+    threads: usize,
+}
+
+#[pymethods]
+impl Reference {
+    /// `choices` of the random agent have been made already.
+    #[new]
+    fn new(name: String, seed: u64, choices: u64, threads: usize) -> PyResult<Self> {
+        signals::executor(threads).map_err(errors::env)?;
+        Ok(Self {
+            name,
+            random: Random::new(seed, choices),
+            threads,
+        })
+    }
+
+    /// Checks that it can act in a task.
+    fn check(&self, task: &Task) -> PyResult<()> {
+        self.policy(task).map(|_| ())
+    }
+
+    /// Random choices made so far.
+    fn choices(&self) -> u64 {
+        self.random.choices()
+    }
+
+    /// Actions (n, k) for flat senses (n, m), and the plans for the next call.
+    fn predict<'py>(
+        &self,
+        py: Python<'py>,
+        task: &Task,
+        senses: PyReadonlyArray2<'py, f32>,
+        starts: Vec<bool>,
+        plans: Option<&Plans>,
+    ) -> PyResult<(Bound<'py, PyArray2<f32>>, Plans)> {
+        act(
+            py,
+            &*self.policy(task)?,
+            &senses,
+            &starts,
+            plans,
+            self.threads,
+        )
+    }
+
+    /// What it decides (n, k) for flat senses (n, m).
+    fn decide<'py>(
+        &self,
+        py: Python<'py>,
+        task: &Task,
+        senses: PyReadonlyArray2<'py, f32>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        decide(py, &*self.policy(task)?, &senses, self.threads)
+    }
+}
+
+impl Reference {
+    fn policy(&self, task: &Task) -> PyResult<Box<dyn Policy + '_>> {
+        reference(&self.name, &task.task, &self.random).map_err(errors::agent)
+    }
+}

@@ -24,7 +24,7 @@ pub const MAX_TERMS: usize = 4;
 /// Most facts of an episode.
 pub const MAX_FACTS: usize = 8;
 
-/// Everything about a task that stays the same within and between episodes.
+/// A task: its params, which never change, and all that [`crate::Episode`] asks of it.
 pub trait Task: fmt::Debug + Send + Sync + Sized + 'static {
     /// What a user asks of the cases to come.
     type Request: fmt::Debug + Clone + Default + Send + Sync;

@@ -146,7 +146,7 @@ fn nonsense_of_grasping_is_refused() {
             ("distance", &|s| s.distance = NAN),
             ("steps", &|s| s.progress.steps = 1 << 30),
             ("outcome joint_limit", &|s| {
-                s.progress.outcome = Outcome::JointLimit
+                s.progress.outcome = Outcome::JointLimit;
             }),
             ("support", &|s| s.enclosure.grip = Grip::Tried(3)),
             ("tried still", &|s| s.enclosure.grip = Grip::Tried(u32::MAX)),

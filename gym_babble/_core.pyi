@@ -4,6 +4,7 @@ from typing import Any, TypeAlias, TypedDict, final
 
 import numpy as np
 from numpy.typing import NDArray
+from typing_extensions import NotRequired
 
 __all__ = [
     "Association",
@@ -47,8 +48,8 @@ class _Movement(TypedDict):
 
 class _Records(TypedDict):
     senses: NDArray[np.float32]
-    achieved_goal: NDArray[np.float32]
-    desired_goal: NDArray[np.float32]
+    achieved_goal: NotRequired[NDArray[np.float32]]
+    desired_goal: NotRequired[NDArray[np.float32]]
     reward: NDArray[np.float64]
     terminated: NDArray[np.bool_]
     truncated: NDArray[np.bool_]

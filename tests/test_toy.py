@@ -62,6 +62,9 @@ def test_its_episodes_end_at_the_target_or_in_time():
     assert (reward, info["outcome"], info["is_success"]) == (1.0, "success", True)
     assert env.unwrapped.trajectory.shape == (steps + 1, 2)
     assert env.render().shape == (480, 480, 3)
+    core = env.unwrapped._batch
+    assert core.one_goals() == []
+    assert not {"achieved_goal", "desired_goal"} & set(core.all())
     still = BabbleEnv(task="toy", max_episode_steps=2)
     still.reset(seed=0, options={"target": (0.9, 0.9)})
     assert still.step([0, 0])[2:4] == (False, False)

@@ -238,11 +238,17 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
         return [self._interface.request({**options, "scenario": case}) for case in cases]
 
     def _observation(self, shown: Mapping[str, Any]) -> Any:
-        goals = [shown["achieved_goal"], shown["desired_goal"]]
+        goals = self._goals(shown)
         retina = None
         if self._interface.obs == "retina":
             retina = np.stack([member.retina() for member in self._members])
         return self._interface.observation(shown["senses"], goals, retina)
+
+    def _goals(self, shown: Mapping[str, Any]) -> list[NDArray[np.float32]]:
+        """Achieved and desired goals, where they are part of the observation."""
+        if self._interface.obs != "goal":
+            return []
+        return [shown["achieved_goal"], shown["desired_goal"]]
 
     def _infos(self, shown: Mapping[str, Any], mask: NDArray[np.bool_]) -> dict[str, Any]:
         """Infos in the layout of `VectorEnv._add_info`: each key beside its mask."""
@@ -267,7 +273,7 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
         if ended is None:
             return
         indices, last = ended
-        goals = (last["achieved_goal"], last["desired_goal"])
+        goals = self._goals(last)
         spec, outcomes = self._interface.spec, self._interface.outcomes
         for name in spec.reward_terms:
             # The new episodes have had no reward yet; what the step gave stands in `final_info`.

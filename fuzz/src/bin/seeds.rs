@@ -56,7 +56,7 @@ fn main() -> Result<()> {
     agents()
 }
 
-fn begun<T: Task>(task: T, request: Option<babble_env::task::Request<T>>) -> Result<Batch<T>> {
+fn begun<T: Task>(task: T, request: Option<T::Request>) -> Result<Batch<T>> {
     let mut env = Batch::new(Arc::new(task), 1, Autoreset::Disabled, 1)?;
     env.seed(0, 1)?;
     if let Some(request) = request {

@@ -2,9 +2,10 @@
 
 use std::hint::black_box;
 
-use babble_env::task::{Episode, Task};
-use babble_env::tasks::grasp::{Grasp, GraspRequest, Grip};
-use babble_env::{Config, Control, GraspOptions, GraspTask, Purpose, Stream, snapshot};
+use babble_env::tasks::grasp::{GraspRequest, Grip};
+use babble_env::{
+    Config, Control, Episode, GraspOptions, GraspTask, Purpose, Stream, Task, snapshot,
+};
 use criterion::{Criterion, criterion_group, criterion_main};
 
 fn task(control: Control) -> GraspTask {
@@ -17,8 +18,8 @@ fn task(control: Control) -> GraspTask {
     GraspTask::new(Config::profile("paper").expect("there is one"), options).expect("it is valid")
 }
 
-fn begun(task: &GraspTask, request: GraspRequest) -> Grasp {
-    let mut episode = Grasp::new(task, Stream::new(Purpose::Validation, 1, 0));
+fn begun(task: &GraspTask, request: GraspRequest) -> Episode<GraspTask> {
+    let mut episode = Episode::new(task, Stream::new(Purpose::Validation, 1, 0));
     episode.request(request);
     let drawn = episode.draw(task).expect("it can be played");
     episode.begin(task, drawn);
@@ -26,7 +27,7 @@ fn begun(task: &GraspTask, request: GraspRequest) -> Grasp {
 }
 
 /// The hand around an object, support and all.
-fn held(task: &GraspTask) -> Grasp {
+fn held(task: &GraspTask) -> Episode<GraspTask> {
     let object = [0.05, 0.25];
     let request = GraspRequest {
         start: Some([-0.5, 0.6]),
@@ -63,10 +64,10 @@ fn steps(c: &mut Criterion) {
     let enclosed = held(&posture).state().clone();
     let action = [0.0, 0.2, 0.0, 0.0];
     c.bench_function("grasp: control step with senses, object held", |b| {
-        let mut episode = Grasp::from_state(&posture, enclosed.clone());
+        let mut episode = Episode::from_state(&posture, enclosed.clone());
         b.iter(|| {
             if episode.step(&posture, black_box(&action)).is_err() {
-                episode = Grasp::from_state(&posture, enclosed.clone());
+                episode = Episode::from_state(&posture, enclosed.clone());
             }
             episode.observe(&posture, &mut senses);
         });

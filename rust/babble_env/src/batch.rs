@@ -3,12 +3,14 @@
 use std::fmt;
 use std::sync::Arc;
 
+use crate::episode::{Episode, EpisodeInfo, NextEpisode, Step};
 use crate::error::EnvError;
 use crate::executor::Executor;
 use crate::named_enum::named_enum;
+use crate::progress::Phase;
 use crate::snapshot;
 use crate::stream::{Purpose, Stream};
-use crate::task::{Episode, EpisodeInfo, Phase, Request, State, Step, Task};
+use crate::task::Task;
 
 named_enum!(
     /// When an ended episode begins anew.
@@ -26,6 +28,10 @@ named_enum!(
 pub struct Record {
     /// Flat observation.
     pub senses: Vec<f32>,
+    /// Where the task has brought what it moves, in the unit of the spec; empty without goals.
+    pub achieved: Vec<f32>,
+    /// Where it should be; empty without goals.
+    pub desired: Vec<f32>,
     /// What it shows beside.
     pub info: EpisodeInfo,
     /// Reward and end.
@@ -33,19 +39,24 @@ pub struct Record {
 }
 
 impl Record {
-    fn of<T: Task>(task: &T, env: &T::Episode) -> Self {
-        let mut senses = vec![0.0; task.senses_len()];
-        env.observe(task, &mut senses);
-        Self {
-            senses,
+    fn of<T: Task>(task: &T, env: &Episode<T>, goal_len: usize) -> Self {
+        let mut record = Self {
+            senses: vec![0.0; task.senses_len()],
+            achieved: vec![0.0; goal_len],
+            desired: vec![0.0; goal_len],
             info: env.info(task),
             step: Step::default(),
-        }
+        };
+        record.update(task, env, Step::default());
+        record
     }
 
     /// Shows `env` after `step`, in the same memory.
-    fn update<T: Task>(&mut self, task: &T, env: &T::Episode, step: Step) {
+    fn update<T: Task>(&mut self, task: &T, env: &Episode<T>, step: Step) {
         env.observe(task, &mut self.senses);
+        if !self.achieved.is_empty() {
+            env.goals(task, &mut self.achieved, &mut self.desired);
+        }
         self.info = env.info(task);
         self.step = step;
     }
@@ -53,10 +64,10 @@ impl Record {
 
 /// One environment and what it last showed.
 struct BatchMember<T: Task> {
-    env: T::Episode,
+    env: Episode<T>,
     record: Record,
     /// The episode that a same-step reset replaced.
-    final_episode: Option<FinalEpisode<State<T>>>,
+    final_episode: Option<FinalEpisode<T::State>>,
 }
 
 /// An episode at its end.
@@ -118,10 +129,12 @@ impl<T: Task> Batch<T> {
                 bound: "in [1, 1000000]".to_owned(),
             });
         }
+        let goal_len = task.spec().goal_len();
         let mut members = Vec::with_capacity(n);
         pool.in_turn(0..n, |_, i| {
             let stream = Stream::new(Purpose::Environment, 0, i as u64);
-            members.push(BatchMember::new(&*task, T::Episode::new(&task, stream)));
+            let env = Episode::new(&*task, stream);
+            members.push(BatchMember::new(&*task, env, goal_len));
             Ok(())
         })?;
         Ok(Self {
@@ -165,7 +178,7 @@ impl<T: Task> Batch<T> {
     /// The episode that ended within the last step, of each environment that a same-step reset began
     /// anew.
     #[must_use]
-    pub fn final_episodes(&self) -> impl ExactSizeIterator<Item = Option<&FinalEpisode<State<T>>>> {
+    pub fn final_episodes(&self) -> impl ExactSizeIterator<Item = Option<&FinalEpisode<T::State>>> {
         self.members
             .iter()
             .map(|member| member.final_episode.as_ref())
@@ -175,7 +188,7 @@ impl<T: Task> Batch<T> {
     ///
     /// # Errors
     /// [`EnvError::OutOfBounds`] if there is no such environment.
-    pub fn state(&self, i: usize) -> Result<&State<T>, EnvError> {
+    pub fn state(&self, i: usize) -> Result<&T::State, EnvError> {
         self.members
             .get(i)
             .map(|member| member.env.state())
@@ -197,7 +210,7 @@ impl<T: Task> Batch<T> {
     ///
     /// # Errors
     /// [`EnvError::OutOfBounds`] if there is no such environment.
-    pub fn request(&mut self, i: usize, request: Request<T>) -> Result<(), EnvError> {
+    pub fn request(&mut self, i: usize, request: T::Request) -> Result<(), EnvError> {
         self.member(i)?.env.request(request);
         Ok(())
     }
@@ -302,7 +315,8 @@ impl<T: Task> Batch<T> {
     pub fn load(&mut self, i: usize, bytes: &[u8]) -> Result<(), EnvError> {
         let task = &*self.task;
         let state = snapshot::load(task, bytes)?;
-        let member = BatchMember::new(task, T::Episode::from_state(task, state));
+        let env = Episode::from_state(task, state);
+        let member = BatchMember::new(task, env, task.spec().goal_len());
         *self.member(i)? = member;
         Ok(())
     }
@@ -314,15 +328,15 @@ impl<T: Task> Batch<T> {
 }
 
 impl<T: Task> BatchMember<T> {
-    fn new(task: &T, env: T::Episode) -> Self {
+    fn new(task: &T, env: Episode<T>, goal_len: usize) -> Self {
         Self {
-            record: Record::of(task, &env),
+            record: Record::of(task, &env, goal_len),
             env,
             final_episode: None,
         }
     }
 
-    fn begin(&mut self, task: &T, drawn: <T::Episode as Episode>::NextEpisode) {
+    fn begin(&mut self, task: &T, drawn: NextEpisode<T>) {
         self.env.begin(task, drawn);
         self.record.update(task, &self.env, Step::default());
     }

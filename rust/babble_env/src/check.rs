@@ -1,7 +1,7 @@
 //! Checks of states that somebody else wrote.
 
 use crate::error::EnvError;
-use crate::task::Phase;
+use crate::progress::Phase;
 
 /// Numbers of a state are rounded: how far beyond a bound they may be.
 pub(crate) const MARGIN: f64 = 1e-9;

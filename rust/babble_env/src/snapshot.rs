@@ -3,8 +3,9 @@
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_64;
 
+use crate::episode;
 use crate::error::EnvError;
-use crate::task::{Episode, State, Task};
+use crate::task::Task;
 
 const VERSION: u16 = 2;
 
@@ -22,7 +23,7 @@ struct Header {
 ///
 /// # Errors
 /// Never for a state of this crate; the serializer's signature has it.
-pub fn save<T: Task>(task: &T, state: &State<T>) -> Result<Vec<u8>, EnvError> {
+pub fn save<T: Task>(task: &T, state: &T::State) -> Result<Vec<u8>, EnvError> {
     let body = postcard::to_stdvec(state).map_err(|error| problem(&error))?;
     let header = Header {
         magic: T::MAGIC,
@@ -40,7 +41,7 @@ pub fn save<T: Task>(task: &T, state: &State<T>) -> Result<Vec<u8>, EnvError> {
 /// # Errors
 /// [`EnvError::Snapshot`] for bytes that are cut short, altered, of another version, of an environment
 /// with another config or other options, or a state that no episode can be in.
-pub fn load<T: Task>(task: &T, bytes: &[u8]) -> Result<State<T>, EnvError> {
+pub fn load<T: Task>(task: &T, bytes: &[u8]) -> Result<T::State, EnvError> {
     let (header, body): (Header, &[u8]) =
         postcard::take_from_bytes(bytes).map_err(|error| problem(&error))?;
     if header.magic != T::MAGIC {
@@ -61,12 +62,12 @@ pub fn load<T: Task>(task: &T, bytes: &[u8]) -> Result<State<T>, EnvError> {
     if header.body != xxh3_64(body) {
         return Err(refused("the bytes are cut short or altered"));
     }
-    let (mut state, rest): (State<T>, &[u8]) =
+    let (mut state, rest): (T::State, &[u8]) =
         postcard::take_from_bytes(body).map_err(|error| problem(&error))?;
     if !rest.is_empty() {
         return Err(refused("bytes are left over"));
     }
-    T::Episode::check(task, &mut state)?;
+    episode::check(task, &mut state)?;
     Ok(state)
 }
 
@@ -74,7 +75,7 @@ pub fn load<T: Task>(task: &T, bytes: &[u8]) -> Result<State<T>, EnvError> {
 ///
 /// # Errors
 /// As [`save`].
-pub fn hash<T: Task>(task: &T, state: &State<T>) -> Result<u64, EnvError> {
+pub fn hash<T: Task>(task: &T, state: &T::State) -> Result<u64, EnvError> {
     Ok(xxh3_64(&save(task, state)?))
 }
 

@@ -43,3 +43,11 @@ pub struct Spec {
     /// Control periods a second.
     pub control_hz: f64,
 }
+
+impl Spec {
+    /// Numbers in a goal; 0 without goals.
+    #[must_use]
+    pub fn goal_len(&self) -> usize {
+        self.goals.first().map_or(0, |goal| goal.labels.len())
+    }
+}

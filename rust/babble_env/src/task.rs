@@ -1,11 +1,11 @@
-//! What a batch needs to know of a task and of its episodes.
+//! What a task is: all that its episodes do not share with those of other tasks.
 
 use std::fmt;
 
 use babble_body::description::LinkDescription;
 use image::RgbImage;
+use serde::Serialize;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::case::{CasePart, CaseValues};
@@ -15,6 +15,7 @@ use crate::executor::Executor;
 use crate::near;
 use crate::outcome::Outcome;
 use crate::picture::View;
+use crate::progress::{Ending, Lifecycle, Progress};
 use crate::spec::Spec;
 use crate::stream::{Purpose, Stream};
 
@@ -23,15 +24,26 @@ pub const MAX_TERMS: usize = 4;
 /// Most facts of an episode.
 pub const MAX_FACTS: usize = 8;
 
-/// Everything about a task that stays the same within and between episodes.
+/// A task: its params, which never change, and all that [`crate::Episode`] asks of it.
 pub trait Task: fmt::Debug + Send + Sync + Sized + 'static {
-    /// One episode of it.
-    type Episode: Episode<Task = Self>;
+    /// What a user asks of the cases to come.
+    type Request: fmt::Debug + Clone + Default + Send + Sync;
+    /// What is drawn for a new episode.
+    type Drawn: fmt::Debug + Send;
+    /// Everything that changes: what a snapshot holds, [`Progress`] and [`Lifecycle`] within it.
+    type State: fmt::Debug + Clone + Send + Sync + Serialize + DeserializeOwned;
+    /// What follows from a state and is kept beside it, as making it takes long.
+    type Derived: fmt::Debug + Send + Sync;
+    /// What the reward of a step is the change of.
+    type Potential;
 
     /// What its environments are called in errors.
     const NAME: &'static str;
     /// First bytes of its snapshots.
     const MAGIC: [u8; 4];
+
+    /// The outcomes that its episodes can have.
+    const OUTCOMES: &'static [Outcome];
 
     /// What a case consists of, and a user may ask of one.
     const CASE_PARTS: &'static [CasePart] = &[];
@@ -64,6 +76,69 @@ pub trait Task: fmt::Debug + Send + Sync + Sized + 'static {
     /// All that decides how an episode goes on: a snapshot continues only where it is the same.
     fn fingerprint(&self) -> impl Serialize;
 
+    /// The two parts of a state that all tasks share.
+    fn shared(state: &Self::State) -> (&Progress, &Lifecycle<Self::Request>);
+
+    /// The same, to be changed.
+    fn shared_mut(state: &mut Self::State) -> (&mut Progress, &mut Lifecycle<Self::Request>);
+
+    /// The state before the first reset.
+    fn fresh(&self, lifecycle: Lifecycle<Self::Request>) -> Self::State;
+
+    /// Checks the task's own part of a state that somebody else wrote, and makes again what was not
+    /// written of it.
+    ///
+    /// # Errors
+    /// [`EnvError::Snapshot`] naming what no state of this task can be.
+    fn check(&self, state: &mut Self::State) -> Result<(), EnvError>;
+
+    /// What follows from a state.
+    fn derive(&self, state: &Self::State) -> Self::Derived;
+
+    /// Draws a case.
+    ///
+    /// # Errors
+    /// [`EnvError`] when the case asked for cannot be played.
+    fn draw(&self, request: &Self::Request, stream: &mut Stream) -> Result<Self::Drawn, EnvError>;
+
+    /// Begins an episode in a state whose shared parts are set.
+    fn begin(&self, state: &mut Self::State, drawn: Self::Drawn);
+
+    /// How its episodes end.
+    fn ending(&self) -> Ending;
+
+    /// What the reward of a step is the change of.
+    fn potential(&self, state: &Self::State) -> Self::Potential;
+
+    /// One step of a running episode: sets the outcome if it failed, and says whether the task is done
+    /// now. `action` is as in [`crate::Episode::step`].
+    ///
+    /// # Errors
+    /// [`EnvError`] for a state in which it cannot be stepped.
+    fn advance(
+        &self,
+        state: &mut Self::State,
+        derived: &mut Self::Derived,
+        action: &[f32],
+    ) -> Result<bool, EnvError>;
+
+    /// Reward terms of the step just made, in the order of the spec, then zeros.
+    fn reward_terms(&self, state: &Self::State, before: Self::Potential) -> [f64; MAX_TERMS];
+
+    /// Writes the flat observation, all [`Self::senses_len`] numbers of it.
+    fn observe(&self, state: &Self::State, derived: &Self::Derived, out: &mut [f32]);
+
+    /// Writes where the task has brought what it moves, and where it should be, each as long as the
+    /// spec's goals. Never asked of a task without goals.
+    fn goals(&self, state: &Self::State, achieved: &mut [f32], desired: &mut [f32]) {
+        let _ = (state, achieved, desired);
+    }
+
+    /// Writes the facts that follow [`crate::progress::SUCCESS_FACTS`] in the spec.
+    fn facts(&self, state: &Self::State, out: &mut [bool]) {
+        let _ = (state, out);
+    }
+
     /// Reward of the goal form, from positions alone; NaN where the task has no such form.
     fn goal_reward(&self, achieved: &[f32], desired: &[f32]) -> f64 {
         let _ = (achieved, desired);
@@ -71,13 +146,13 @@ pub trait Task: fmt::Debug + Send + Sync + Sized + 'static {
     }
 
     /// What named values ask of the cases to come. Unspecified values are sampled.
-    fn request(&self, asked: &CaseValues) -> Request<Self> {
+    fn request(&self, asked: &CaseValues) -> Self::Request {
         let _ = asked;
-        Request::<Self>::default()
+        Self::Request::default()
     }
 
     /// The case of an episode as named values.
-    fn case(&self, state: &State<Self>) -> CaseValues {
+    fn case(&self, state: &Self::State) -> CaseValues {
         let _ = state;
         CaseValues::default()
     }
@@ -101,13 +176,13 @@ pub trait Task: fmt::Debug + Send + Sync + Sized + 'static {
     }
 
     /// The recorded positions of the hand, one a control step \[m\].
-    fn trail(&self, state: &State<Self>) -> Vec<[f64; 2]> {
+    fn trail(&self, state: &Self::State) -> Vec<[f64; 2]> {
         let _ = state;
         Vec::new()
     }
 
     /// How many moments of an episode were recorded.
-    fn moments(&self, state: &State<Self>) -> usize;
+    fn moments(&self, state: &Self::State) -> usize;
 
     /// A picture of an episode; `frame` picks one of its recorded moments, none is now.
     ///
@@ -115,123 +190,17 @@ pub trait Task: fmt::Debug + Send + Sync + Sized + 'static {
     /// [`EnvError::OutOfBounds`] for an edge or frame that is out of bounds.
     fn picture(
         &self,
-        state: &State<Self>,
+        state: &Self::State,
         view: View,
         size: [u32; 2],
         frame: Option<usize>,
     ) -> Result<RgbImage, EnvError>;
 }
 
-/// The state of a task's episodes.
-pub type State<T> = <<T as Task>::Episode as Episode>::State;
-/// What a user may ask of a task's cases.
-pub type Request<T> = <<T as Task>::Episode as Episode>::Request;
-
-/// One episode: its state and what follows from it.
-pub trait Episode: Send + Sync {
-    /// The task it is of.
-    type Task: Task<Episode = Self>;
-    /// What a user asks of the cases to come.
-    type Request: Clone + Default;
-    /// A new episode that was drawn and not begun yet.
-    type NextEpisode: Send;
-    /// Everything that changes: what a snapshot holds.
-    type State: Clone + Send + Sync + Serialize + DeserializeOwned;
-
-    /// An episode that has to be reset before it can step.
-    fn new(task: &Self::Task, stream: Stream) -> Self;
-
-    /// Checks a state that somebody else wrote, and makes again what was not written of it: then no
-    /// number that it holds makes a step, an observation or a picture panic or hang.
-    ///
-    /// # Errors
-    /// [`EnvError::Snapshot`] naming what no state of this task can be.
-    fn check(task: &Self::Task, state: &mut Self::State) -> Result<(), EnvError>;
-
-    /// An episode that continues from `state`.
-    fn from_state(task: &Self::Task, state: Self::State) -> Self;
-
-    /// All that changes.
-    fn state(&self) -> &Self::State;
-
-    /// Whether it can be stepped.
-    fn phase(&self) -> Phase;
-
-    /// Starts the stream of cases anew.
-    fn seed(&mut self, stream: Stream);
-
-    /// Sets what the following resets ask of their cases; forgotten if the next one cannot play it.
-    fn request(&mut self, request: Self::Request);
-
-    /// Draws the case of a new episode.
-    ///
-    /// # Errors
-    /// [`EnvError`] when the case asked for cannot be played; the episode stays as it was.
-    fn draw(&mut self, task: &Self::Task) -> Result<Self::NextEpisode, EnvError>;
-
-    /// Begins an episode that was drawn.
-    fn begin(&mut self, task: &Self::Task, drawn: Self::NextEpisode);
-
-    /// Leaves the episode unfinished: it has to be reset before it can step.
-    fn abandon(&mut self);
-
-    /// One step of a running episode. `action` has [`Task::action_len`] numbers, all finite; those
-    /// outside of [−1, 1] are clipped.
-    ///
-    /// # Errors
-    /// [`EnvError::NeedsReset`] outside of an episode.
-    fn step(&mut self, task: &Self::Task, action: &[f32]) -> Result<Step, EnvError>;
-
-    /// Writes the flat observation, all [`Task::senses_len`] numbers of it.
-    fn observe(&self, task: &Self::Task, out: &mut [f32]);
-
-    /// What it shows beside the senses.
-    fn info(&self, task: &Self::Task) -> EpisodeInfo;
-}
-
-/// Whether an episode can be stepped.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Phase {
-    /// Never reset, or abandoned.
-    Fresh,
-    /// Between reset and end.
-    Running,
-    /// Terminated or truncated.
-    Ended,
-}
-
-/// What one step gave.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Step {
-    /// Sum of the terms.
-    pub reward: f64,
-    /// Reward terms in the order of the spec, then zeros.
-    pub terms: [f64; MAX_TERMS],
-    /// Ended by the task.
-    pub terminated: bool,
-    /// Ended by the time limit.
-    pub truncated: bool,
-}
-
-/// What an episode shows beside its senses.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EpisodeInfo {
-    /// Where the task has brought what it moves \[m\].
-    pub achieved: [f32; 2],
-    /// Where it should be \[m\].
-    pub desired: [f32; 2],
-    /// How the episode stands.
-    pub outcome: Outcome,
-    /// What is true of it in the order of the spec, then false.
-    pub facts: [bool; MAX_FACTS],
-}
-
 /// Reward of a goal form, from positions alone \[m\]: 0 within `radius` \[m\], else −1.
-pub(crate) fn goal_reward(radius: f64, achieved: [f32; 2], desired: [f32; 2]) -> f64 {
-    let [dx, dy] = [0, 1].map(|i| f64::from(achieved[i]) - f64::from(desired[i]));
-    if (dx * dx + dy * dy).sqrt() <= radius {
-        0.0
-    } else {
-        -1.0
-    }
+pub(crate) fn goal_reward(radius: f64, achieved: &[f32], desired: &[f32]) -> f64 {
+    let pairs = achieved.iter().zip(desired);
+    let offsets = pairs.map(|(&a, &d)| f64::from(a) - f64::from(d));
+    let distance = offsets.map(|d| d * d).sum::<f64>().sqrt();
+    if distance <= radius { 0.0 } else { -1.0 }
 }

@@ -81,7 +81,7 @@ fn same_step_resets_at_once_and_keeps_the_end() {
                 .unwrap()
                 .expect("the episode that ended");
             assert_eq!(last.record, *end);
-            assert_eq!(last.state.outcome, end.info.outcome);
+            assert_eq!(last.state.progress.outcome, end.info.outcome);
             let shown = record(&env);
             assert_eq!(shown.step, end.step);
             assert_eq!(

@@ -163,7 +163,7 @@ fn requests_are_kept() {
             let drawn = env.state(0).unwrap().clone();
             env.reset(&[true]).unwrap();
             let again = env.state(0).unwrap();
-            assert_eq!(again.request, request);
+            assert_eq!(again.lifecycle.request, request);
             let whole = pick(0) && pick(1) && pick(2) && pick(3);
             assert!(again.case == drawn.case || !whole);
             assert!(again.case != drawn.case || pick(0) && pick(1));
@@ -191,7 +191,7 @@ fn episodes_begin_as_their_case() {
         let [x, y] = state.case.object;
         assert!((task.robot.object(&state.world) - Vector3::new(x, y, 0.0)).norm() < 1e-6);
         assert!(task.robot.has_support(&state.world) && !task.robot.touch(&state.world).any());
-        assert!(!state.reach && state.touch == [0.0; 3] && state.steps == 0);
+        assert!(!state.reach && state.touch == [0.0; 3] && state.progress.steps == 0);
     }
 }
 
@@ -333,7 +333,10 @@ fn impossible_cases_are_named() {
         }
         env.step(&[0.5; 4]).unwrap();
         env.reset(&[true]).unwrap();
-        assert_eq!(env.state(0).unwrap().request, GraspRequest::default());
+        assert_eq!(
+            env.state(0).unwrap().lifecycle.request,
+            GraspRequest::default()
+        );
     }
 }
 

@@ -170,7 +170,7 @@ fn automatic_resets_are_those_by_hand() {
             .unwrap()
             .expect("the episode that ended");
         assert_eq!(last.record, *end);
-        assert_eq!(last.state.outcome, end.info.outcome);
+        assert_eq!(last.state.progress.outcome, end.info.outcome);
         let shown = Record {
             step: end.step,
             ..next[0].clone()

@@ -51,14 +51,14 @@ fn grasps(task: &Arc<GraspTask>, seed: u64, diameter: f64, closes: bool) -> bool
         assert_eq!(
             facts[..5],
             [
-                state.is_success,
-                state.ever_success,
+                state.progress.is_success,
+                state.progress.ever_success,
                 state.reach,
                 state.palm_reach,
-                state.is_success
+                state.progress.is_success
             ]
         );
-        assert_eq!(shown.info.outcome, state.outcome);
+        assert_eq!(shown.info.outcome, state.progress.outcome);
     });
     let (shown, state) = (record(&env), state(&env));
     if outcome != Outcome::Success {
@@ -177,10 +177,13 @@ fn an_open_hand_runs_out_of_time() {
             assert!(!record(env).info.facts[IS_SUCCESS]);
         });
         let (shown, state) = (record(&env), state(&env));
-        assert_eq!((outcome, steps, state.steps), (Outcome::Timeout, 90, 90));
+        assert_eq!(
+            (outcome, steps, state.progress.steps),
+            (Outcome::Timeout, 90, 90)
+        );
         assert_eq!((shown.step.terminated, shown.step.truncated), (false, true));
         assert!(state.palm_reach && state.enclosure.grip == Grip::Open);
-        assert!(!state.ever_success);
+        assert!(!state.progress.ever_success);
     }
 }
 
@@ -199,8 +202,8 @@ fn what_is_pushed_away_is_lost() {
         let away = centre.xy().norm() > task.arm.length() + 0.03;
         assert_eq!(shown.step.terminated, away, "{centre}");
         if away {
-            assert_eq!(state.outcome, Outcome::Lost);
-            assert!(state.reach && !state.ever_success);
+            assert_eq!(state.progress.outcome, Outcome::Lost);
+            assert!(state.reach && !state.progress.ever_success);
             assert!(state.enclosure.grip == Grip::Open && centre.z > -0.01);
             break;
         }
@@ -293,7 +296,7 @@ fn a_step_is_ten_physics_steps() {
                 assert!((shown - felt).abs() < 1e-6, "{shown} {felt}");
             }
             if ended(&shown) {
-                assert_eq!(state.outcome, Outcome::Success, "{control}");
+                assert_eq!(state.progress.outcome, Outcome::Success, "{control}");
                 assert!(!support);
                 break;
             }
@@ -372,11 +375,14 @@ fn touching_the_obstacle_ends_the_episode() {
             let posture = task.robot.posture(&state.world);
             let stands = state.case.obstacle.unwrap();
             let gap = task.robot.clearance_of_vertical(posture, stands.centre) - stands.radius;
-            assert_eq!(state.outcome == Outcome::Collision, shown.step.terminated);
+            assert_eq!(
+                state.progress.outcome == Outcome::Collision,
+                shown.step.terminated
+            );
             if shown.step.terminated {
                 assert!(gap.abs() < 2e-3, "{gap} m");
                 assert_eq!(shown.step.terms[3], -1.0);
-                assert!(!state.is_success && !state.reach);
+                assert!(!state.progress.is_success && !state.reach);
                 break;
             }
             assert!(gap > -1e-4 && step < 100, "{gap} m");
@@ -393,7 +399,7 @@ fn touching_the_obstacle_ends_the_episode() {
     for _ in 0..60 {
         let action = asking_for(&task, state(&env), posture);
         env.step(&action).unwrap();
-        assert_eq!(state(&env).outcome, Outcome::Running);
+        assert_eq!(state(&env).progress.outcome, Outcome::Running);
     }
 }
 

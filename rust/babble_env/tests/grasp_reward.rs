@@ -2,7 +2,7 @@
 
 mod playing;
 
-use babble_env::task::Phase;
+use babble_env::progress::Phase;
 use babble_env::tasks::grasp::{FACTS, GraspRequest, GraspState, Grip, goal_reward};
 use babble_env::{Autoreset, Batch, Control, GraspOptions, GraspTask, Outcome, Reward, Task};
 use nalgebra::Vector3;
@@ -88,12 +88,12 @@ fn adds_up(
         let share = state.enclosure.share(&task.config.grasp);
         assert!((progress - (first - state.distance) / 0.1).abs() < 1e-9);
         assert!((enclosure - share).abs() < 1e-9 && (0.0..=1.0).contains(&share));
-        let paid = match state.outcome {
+        let paid = match state.progress.outcome {
             Outcome::Success => [1.0, 0.0],
             Outcome::Collision | Outcome::Lost => [0.0, -1.0],
             _ => [0.0; 2],
         };
-        assert_eq!([success, failure], paid, "{}", state.outcome);
+        assert_eq!([success, failure], paid, "{}", state.progress.outcome);
         assert_eq!(shown.step.terminated, paid != [0.0; 2]);
         if ended(&shown) {
             return;
@@ -114,7 +114,7 @@ fn progress_adds_up_over_an_episode() {
             let near = before_the_palm(&task, diameter);
             let mut env = asked(task, seed, near);
             adds_up(&mut env, |task, state| script(task, state, true));
-            outcomes.push(state(&env).outcome);
+            outcomes.push(state(&env).progress.outcome);
         }
         let short = GraspOptions {
             max_episode_steps: 40,
@@ -123,14 +123,14 @@ fn progress_adds_up_over_an_episode() {
         let mut env = asked(grasp(short), 5, GraspRequest::default());
         let mut actions = Actions::of_width(1, 4);
         adds_up(&mut env, |_, _| *actions.draw().first_chunk().unwrap());
-        outcomes.push(state(&env).outcome);
+        outcomes.push(state(&env).progress.outcome);
     }
     let slippery = r#"{"body": {"object": {"friction": 0, "density_kg_m3": 4000}}}"#;
     let task = grasp_with(slippery, with_control(Control::Posture));
     let near = before_the_palm(&task, 0.06);
     let mut env = asked(task, 0, near);
     adds_up(&mut env, |task, state| script(task, state, true));
-    outcomes.push(state(&env).outcome);
+    outcomes.push(state(&env).progress.outcome);
     for outcome in [Outcome::Success, Outcome::Timeout, Outcome::Lost] {
         assert!(outcomes.contains(&outcome), "{outcomes:?}");
     }
@@ -192,29 +192,29 @@ fn goal_reward_is_the_steps_reward() {
                 let (shown, state) = (record(&env), state(&env));
                 let object = task.robot.object(&state.world);
                 let there = [object.x as f32, object.y as f32];
-                assert_eq!(shown.info.achieved, there);
-                assert_eq!(shown.info.desired, goal.map(|x| x as f32));
-                let again = goal_reward(&task.config, there, shown.info.desired);
+                assert_eq!(shown.achieved, there);
+                assert_eq!(shown.desired, goal.map(|x| x as f32));
+                let again = goal_reward(&task.config, &there, &shown.desired);
                 assert_eq!(shown.step.reward, again);
                 assert_eq!(shown.step.terms, [again, 0.0, 0.0, 0.0]);
-                assert_eq!(state.is_success, again == 0.0);
-                ever |= state.is_success;
-                assert_eq!(state.ever_success, ever);
+                assert_eq!(state.progress.is_success, again == 0.0);
+                ever |= state.progress.is_success;
+                assert_eq!(state.progress.ever_success, ever);
                 let last = step == 150;
                 assert_eq!((shown.step.terminated, shown.step.truncated), (false, last));
-                let outcome = match (last, state.is_success) {
+                let outcome = match (last, state.progress.is_success) {
                     (true, true) => Outcome::Success,
                     (true, false) => Outcome::Timeout,
                     _ => Outcome::Running,
                 };
-                assert_eq!(state.outcome, outcome);
+                assert_eq!(state.progress.outcome, outcome);
                 earned += u32::from(again == 0.0);
                 missed += u32::from(again != 0.0);
             }
             // Torques without stiffness let the fingers run on, and the object slips in the hand.
             let carries = control != Control::Torque;
             assert!(
-                shift < 0.08 || state(&env).is_success || !carries,
+                shift < 0.08 || state(&env).progress.is_success || !carries,
                 "{control}"
             );
         }
@@ -225,7 +225,11 @@ fn goal_reward_is_the_steps_reward() {
 /// The state but for the clock and what it says of the episode's course.
 fn body(state: &GraspState) -> Vec<u8> {
     let mut state = state.clone();
-    (state.steps, state.phase, state.outcome) = (0, Phase::Running, Outcome::Running);
+    (
+        state.progress.steps,
+        state.lifecycle.phase,
+        state.progress.outcome,
+    ) = (0, Phase::Running, Outcome::Running);
     postcard::to_stdvec(&state).unwrap()
 }
 
@@ -245,7 +249,7 @@ fn stands_still(env: &mut Batch<GraspTask>, outcome: Outcome, towards: [f64; 4])
             env.step(&action).unwrap();
         }
         let (shown, state) = (record(env), state(env));
-        let again = goal_reward(&task.config, shown.info.achieved, shown.info.desired);
+        let again = goal_reward(&task.config, &shown.achieved, &shown.desired);
         assert_eq!(shown.step.reward, again);
         assert_eq!(
             (shown.step.terminated, shown.step.truncated),
@@ -254,11 +258,11 @@ fn stands_still(env: &mut Batch<GraspTask>, outcome: Outcome, towards: [f64; 4])
         let senses = shown.senses[..shown.senses.len() - 1].to_vec();
         if let Some(failed) = &failed {
             assert_eq!((body(state), senses), *failed);
-            assert_eq!(state.outcome, outcome);
-            assert!(!state.is_success);
+            assert_eq!(state.progress.outcome, outcome);
+            assert!(!state.progress.is_success);
             held += 1;
-        } else if state.outcome != Outcome::Running {
-            assert_eq!(state.outcome, outcome);
+        } else if state.progress.outcome != Outcome::Running {
+            assert_eq!(state.progress.outcome, outcome);
             failed = Some((body(state), senses));
         }
     }
@@ -291,7 +295,7 @@ fn a_collision_freezes_the_goal_form() {
             task.robot.open_hand([1.2, 0.8]),
         );
         assert_eq!(record(&env).step.reward, -1.0);
-        assert!(!state(&env).is_success && state(&env).ever_success);
+        assert!(!state(&env).progress.is_success && state(&env).progress.ever_success);
     }
 }
 
@@ -306,7 +310,7 @@ fn a_loss_freezes_the_goal_form() {
     let task = grasp_with(slippery, options);
     let mut env = asked(task.clone(), 0, before_the_palm(&task, 0.06));
     stands_still(&mut env, Outcome::Lost, task.robot.open_hand([2.5, 0.4]));
-    assert!(!state(&env).is_success);
+    assert!(!state(&env).progress.is_success);
 }
 
 /// A hand that opens on the way drops the object: 10 cm below the plane it is lost, and not before,
@@ -330,7 +334,7 @@ fn what_is_dropped_is_lost() {
         env.step(&action).unwrap();
         let (shown, state) = (record(&env), state(&env));
         let below = task.robot.object(&state.world).z < -0.1;
-        assert_eq!(state.outcome == Outcome::Lost, below);
+        assert_eq!(state.progress.outcome == Outcome::Lost, below);
         assert_eq!(shown.info.facts[4], state.enclosure.grip == Grip::Held);
         lost += u32::from(below);
     }

@@ -222,7 +222,7 @@ fn fresh_environments_and_requests_are_kept() {
     let (near, _) = played(options(Control::Torque), 0, 5);
     env.load(0, &near.save(0).unwrap()).unwrap();
     env.reset(&[true]).unwrap();
-    let request = env.state(0).unwrap().request;
+    let request = env.state(0).unwrap().lifecycle.request;
     assert_eq!(request, before_the_palm(&task, 0.024));
     assert_ne!(request, GraspRequest::default());
 }

@@ -4,7 +4,7 @@
 mod playing;
 
 use babble_body::Obstacle;
-use babble_env::task::{Phase, State};
+use babble_env::progress::Phase;
 use babble_env::tasks::grasp::{GraspRequest, GraspState, Grip};
 use babble_env::tasks::reach::ReachState;
 use babble_env::tasks::reach::{CaseRequest, ObstacleRequest};
@@ -23,7 +23,7 @@ const INF: f64 = f64::INFINITY;
 type Spoil<'a, S> = &'a dyn Fn(&mut S);
 
 /// Loads what `spoil` makes of an environment's state, and expects a refusal that says `named`.
-fn refused<T: Task>(env: &mut Batch<T>, named: &str, spoil: impl FnOnce(&mut State<T>)) {
+fn refused<T: Task>(env: &mut Batch<T>, named: &str, spoil: impl FnOnce(&mut T::State)) {
     let before = bits(env);
     let mut state = env.state(0).unwrap().clone();
     spoil(&mut state);
@@ -73,21 +73,21 @@ fn nonsense_of_reaching_is_refused() {
             ("gaze.pan", &|s| s.gaze.pan = NAN),
             ("gaze.tilt", &|s| s.gaze.tilt = 1.3),
             ("distance", &|s| s.distance = -INF),
-            ("steps", &|s| s.steps = u32::MAX),
+            ("steps", &|s| s.progress.steps = u32::MAX),
             ("steps", &|s| {
-                s.phase = Phase::Running;
-                s.steps = most;
+                s.lifecycle.phase = Phase::Running;
+                s.progress.steps = most;
             }),
-            ("outcome lost", &|s| s.outcome = Outcome::Lost),
-            ("start", &|s| s.request.start = Some([NAN, 0.0])),
+            ("outcome lost", &|s| s.progress.outcome = Outcome::Lost),
+            ("start", &|s| s.lifecycle.request.start = Some([NAN, 0.0])),
             ("target", &|s| {
-                s.request = CaseRequest {
+                s.lifecycle.request = CaseRequest {
                     target: Some([9.0, 9.0]),
-                    ..s.request
+                    ..s.lifecycle.request
                 };
             }),
             ("obstacle", &|s| {
-                s.request.obstacle = ObstacleRequest::At(obstacle([INF, 0.0], 0.02));
+                s.lifecycle.request.obstacle = ObstacleRequest::At(obstacle([INF, 0.0], 0.02));
             }),
             ("trail", &|s| s.trail[0] = [NAN, 0.3]),
             ("moments", &|s| s.trail = vec![[0.3, 0.3]; 400]),
@@ -144,15 +144,17 @@ fn nonsense_of_grasping_is_refused() {
             ("touch", &|s| s.touch[1] = -1.0),
             ("touch", &|s| s.touch[2] = NAN),
             ("distance", &|s| s.distance = NAN),
-            ("steps", &|s| s.steps = 1 << 30),
-            ("outcome joint_limit", &|s| s.outcome = Outcome::JointLimit),
+            ("steps", &|s| s.progress.steps = 1 << 30),
+            ("outcome joint_limit", &|s| {
+                s.progress.outcome = Outcome::JointLimit;
+            }),
             ("support", &|s| s.enclosure.grip = Grip::Tried(3)),
             ("tried still", &|s| s.enclosure.grip = Grip::Tried(u32::MAX)),
-            ("start", &|s| s.request.start = Some([NAN, 0.0])),
+            ("start", &|s| s.lifecycle.request.start = Some([NAN, 0.0])),
             ("diameter", &|s| {
-                s.request = GraspRequest {
+                s.lifecycle.request = GraspRequest {
                     diameter: Some(9.0),
-                    ..s.request
+                    ..s.lifecycle.request
                 };
             }),
             ("a moment has 3 joints", &|s| {
@@ -190,7 +192,7 @@ fn worlds_of_another_engine_are_refused() {
 #[test]
 fn worlds_that_their_past_does_not_lead_to_are_refused() {
     let mut env = in_contact("rapier");
-    refused(&mut env, "steps", |s| s.steps -= 1);
+    refused(&mut env, "steps", |s| s.progress.steps -= 1);
     // A world is written from its joints on: the last bit of the first angle.
     refused(&mut env, "past", |s| {
         let mut bytes = postcard::to_stdvec(&s.world).unwrap();
@@ -202,7 +204,7 @@ fn worlds_that_their_past_does_not_lead_to_are_refused() {
     let state = env.state(0).unwrap().clone();
     let far = babble_body::robot::towards([9.0; 4]);
     refused(&mut env, "a muscle pulled to 9", |s| {
-        s.steps += 1;
+        s.progress.steps += 1;
         task.robot.step(&mut s.world, &far);
     });
     env.load(0, &snapshot::save(&*task, &state).unwrap())
@@ -244,6 +246,6 @@ fn a_stream_that_stands_still_is_refused() {
     );
     refused(&mut env, "stands still", |s| {
         // Its two words, of 128 bits each, as numbers of one byte.
-        s.stream = postcard::from_bytes(&[0, 0]).unwrap();
+        s.lifecycle.stream = postcard::from_bytes(&[0, 0]).unwrap();
     });
 }

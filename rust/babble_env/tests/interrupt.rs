@@ -1,13 +1,15 @@
 //! What interrupts a pool and a batch, and what state it leaves them in.
 
 use std::cell::Cell;
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use std::sync::{Arc, LazyLock};
 use std::thread::{self, ThreadId};
 use std::time::{Duration, Instant};
 
 use babble_env::picture::View;
+use babble_env::progress::{Ending, Lifecycle, Phase, Progress};
 use babble_env::spec::{Entry, Spec};
-use babble_env::task::{Episode, EpisodeInfo, Phase, Step, Task};
+use babble_env::task::{MAX_TERMS, Task};
 use babble_env::{Autoreset, Batch, Config, EnvError, Executor, Outcome, Stream};
 use image::RgbImage;
 use serde::Serialize;
@@ -40,16 +42,34 @@ fn after(most: u32, threads: usize) -> Executor {
 #[derive(Debug)]
 struct Slow {
     making: Duration,
+    /// Limited episodes that can still be drawn.
+    draws: AtomicU32,
 }
 
-/// How far it has counted, how it stands, and episodes that can still be drawn.
+impl Slow {
+    fn new(making: Duration) -> Arc<Self> {
+        let draws = AtomicU32::new(1);
+        Arc::new(Self { making, draws })
+    }
+}
+
+/// How far it has counted. A request says whether its draws are limited.
 #[derive(Clone, Debug, PartialEq, Serialize, serde::Deserialize)]
-struct Count(f32, Phase, u32);
+struct Count {
+    sum: f32,
+    progress: Progress,
+    lifecycle: Lifecycle<bool>,
+}
 
 impl Task for Slow {
-    type Episode = Count;
+    type Request = bool;
+    type Drawn = ();
+    type State = Count;
+    type Derived = ();
+    type Potential = ();
     const NAME: &'static str = "slow";
     const MAGIC: [u8; 4] = *b"SLOW";
+    const OUTCOMES: &'static [Outcome] = &[Outcome::Running, Outcome::Success];
 
     fn config(&self) -> &Config {
         static PAPER: LazyLock<Config> = LazyLock::new(|| Config::profile("paper").unwrap());
@@ -69,18 +89,19 @@ impl Task for Slow {
     }
 
     fn spec(&self) -> Spec {
-        let action = Entry {
-            name: "action",
-            labels: vec![],
+        let entry = |name, labels| Entry {
+            name,
+            labels,
             low: vec![],
             high: vec![],
             unit: "1".into(),
             description: "",
         };
+        let goals = ["achieved_goal", "desired_goal"].map(|name| entry(name, vec!["sum"]));
         Spec {
             senses: vec![],
-            goals: vec![],
-            action,
+            goals: goals.into(),
+            action: entry("action", vec![]),
             reward_terms: &[],
             facts: &[],
             outcomes: vec![],
@@ -91,6 +112,71 @@ impl Task for Slow {
 
     fn fingerprint(&self) -> impl Serialize {
         Self::NAME
+    }
+
+    fn shared(state: &Count) -> (&Progress, &Lifecycle<bool>) {
+        (&state.progress, &state.lifecycle)
+    }
+
+    fn shared_mut(state: &mut Count) -> (&mut Progress, &mut Lifecycle<bool>) {
+        (&mut state.progress, &mut state.lifecycle)
+    }
+
+    fn fresh(&self, lifecycle: Lifecycle<bool>) -> Count {
+        thread::sleep(self.making);
+        Count {
+            sum: 0.0,
+            progress: Progress::START,
+            lifecycle,
+        }
+    }
+
+    fn check(&self, _: &mut Count) -> Result<(), EnvError> {
+        Ok(())
+    }
+
+    fn derive(&self, _: &Count) {}
+
+    fn draw(&self, limited: &bool, _: &mut Stream) -> Result<(), EnvError> {
+        let take = |left: u32| left.checked_sub(1);
+        if *limited && self.draws.fetch_update(Relaxed, Relaxed, take).is_err() {
+            return Err(EnvError::NoLegalCase { tries: 1 });
+        }
+        Ok(())
+    }
+
+    fn begin(&self, state: &mut Count, (): ()) {
+        thread::sleep(STEP);
+        state.sum = 0.0;
+    }
+
+    fn ending(&self) -> Ending {
+        Ending {
+            goal: false,
+            single_step: false,
+            max_steps: 1_000,
+        }
+    }
+
+    fn potential(&self, _: &Count) {}
+
+    fn advance(&self, state: &mut Count, (): &mut (), action: &[f32]) -> Result<bool, EnvError> {
+        thread::sleep(STEP);
+        state.sum += action[0];
+        Ok(state.sum >= 3.0)
+    }
+
+    fn reward_terms(&self, _: &Count, (): ()) -> [f64; MAX_TERMS] {
+        [0.0; MAX_TERMS]
+    }
+
+    fn observe(&self, state: &Count, (): &(), out: &mut [f32]) {
+        out[0] = state.sum;
+    }
+
+    fn goals(&self, state: &Count, achieved: &mut [f32], desired: &mut [f32]) {
+        achieved.copy_from_slice(&[state.sum]);
+        desired.copy_from_slice(&[3.0]);
     }
 
     fn moments(&self, _: &Count) -> usize {
@@ -108,86 +194,10 @@ impl Task for Slow {
     }
 }
 
-impl Episode for Count {
-    type Task = Slow;
-    type Request = u32;
-    type NextEpisode = ();
-    type State = Self;
-
-    fn new(task: &Slow, _: Stream) -> Self {
-        thread::sleep(task.making);
-        Self(0.0, Phase::Fresh, 1_000)
-    }
-
-    fn check(_: &Slow, _: &mut Self) -> Result<(), EnvError> {
-        Ok(())
-    }
-
-    fn from_state(_: &Slow, state: Self) -> Self {
-        state
-    }
-
-    fn state(&self) -> &Self {
-        self
-    }
-
-    fn phase(&self) -> Phase {
-        self.1
-    }
-
-    fn seed(&mut self, _: Stream) {}
-
-    fn request(&mut self, draws: u32) {
-        self.2 = draws;
-    }
-
-    fn draw(&mut self, _: &Slow) -> Result<(), EnvError> {
-        if self.2 == 0 {
-            return Err(EnvError::NoLegalCase { tries: 1 });
-        }
-        Ok(())
-    }
-
-    fn begin(&mut self, _: &Slow, (): ()) {
-        thread::sleep(STEP);
-        *self = Self(0.0, Phase::Running, self.2 - 1);
-    }
-
-    fn abandon(&mut self) {
-        self.1 = Phase::Fresh;
-    }
-
-    fn step(&mut self, _: &Slow, action: &[f32]) -> Result<Step, EnvError> {
-        thread::sleep(STEP);
-        self.0 += action[0];
-        let terminated = self.0 >= 3.0;
-        if terminated {
-            self.1 = Phase::Ended;
-        }
-        Ok(Step {
-            terminated,
-            ..Step::default()
-        })
-    }
-
-    fn observe(&self, _: &Slow, out: &mut [f32]) {
-        out[0] = self.0;
-    }
-
-    fn info(&self, _: &Slow) -> EpisodeInfo {
-        EpisodeInfo {
-            achieved: [0.0; 2],
-            desired: [0.0; 2],
-            outcome: Outcome::Running,
-            facts: [false; _],
-        }
-    }
-}
-
 /// n environments that were reset.
 fn slow(n: usize, pool: Executor, autoreset: Autoreset) -> Batch<Slow> {
-    let making = Duration::ZERO;
-    let mut batch = Batch::with_executor(Arc::new(Slow { making }), n, autoreset, pool).unwrap();
+    let task = Slow::new(Duration::ZERO);
+    let mut batch = Batch::with_executor(task, n, autoreset, pool).unwrap();
     batch.reset(&vec![true; n]).unwrap();
     batch
 }
@@ -200,9 +210,10 @@ fn slow(n: usize, pool: Executor, autoreset: Autoreset) -> Batch<Slow> {
 fn an_interrupted_step_leaves_environments_that_need_a_reset() {
     for threads in [1, 2] {
         let mut batch = slow(N, after(u32::MAX, threads), Autoreset::NextStep);
-        ASKED.set((0, 0));
+        // A pool of threads asks before it begins too, where the last time was long ago.
+        ASKED.set((0, 1));
         assert_eq!(batch.step(&[1.0; N]), Err(EnvError::Interrupted));
-        let stepped: f32 = (0..N).map(|i| batch.state(i).unwrap().0).sum();
+        let stepped: f32 = (0..N).map(|i| batch.state(i).unwrap().sum).sum();
         println!("{threads} threads: {stepped} of {N} stepped");
         assert!((1.0..N as f32).contains(&stepped), "{stepped}");
         assert_eq!(batch.step(&[1.0; N]), Err(EnvError::NeedsReset { env: 0 }));
@@ -217,7 +228,7 @@ fn an_interrupted_step_leaves_environments_that_need_a_reset() {
         assert_eq!(batch.step(&[1.0; N]), Err(EnvError::NeedsReset { env: 7 }));
         batch.reset(&mask.map(|chosen| !chosen)).unwrap();
         batch.step(&[1.0; N]).unwrap();
-        assert!((0..N).all(|i| batch.state(i).unwrap().0 == 1.0));
+        assert!((0..N).all(|i| batch.state(i).unwrap().sum == 1.0));
     }
 }
 
@@ -235,9 +246,9 @@ fn an_interrupted_reset_leaves_the_others_alone() {
         for i in 0..N {
             let state = batch.state(i).unwrap();
             let expected = if i == 3 { Phase::Running } else { Phase::Fresh };
-            assert_eq!(state.1, expected, "{i}");
+            assert_eq!(state.lifecycle.phase, expected, "{i}");
         }
-        assert_eq!(batch.state(3).unwrap().0, 1.0);
+        assert_eq!(batch.state(3).unwrap().sum, 1.0);
         ASKED.set((0, u32::MAX));
         batch.reset(&mask).unwrap();
         batch.step(&[1.0; N]).unwrap();
@@ -254,7 +265,7 @@ fn a_failed_automatic_reset_leaves_environments_that_need_a_reset() {
     for threads in [1, 2] {
         for autoreset in [Autoreset::SameStep, Autoreset::NextStep] {
             let mut batch = slow(8, Executor::new(threads).unwrap(), autoreset);
-            batch.request(5, 1).unwrap();
+            batch.request(5, true).unwrap();
             batch.reset(&[true; 8]).unwrap();
             let mut actions = [1.0; 8];
             actions[5] = 3.0;
@@ -266,17 +277,30 @@ fn a_failed_automatic_reset_leaves_environments_that_need_a_reset() {
             // A reset that fails in the same way changes nothing.
             assert_eq!(batch.reset(&[true; 8]), unplayable);
             assert_eq!(batch.step(&actions), needs_reset);
-            batch.request(5, 2).unwrap();
+            batch.task().draws.store(2, Relaxed);
             batch.reset(&[true; 8]).unwrap();
             batch.step(&actions).unwrap();
         }
     }
 }
 
+/// Goals of this task are one number each. Catches records that think of positions in the plane.
+#[test]
+fn goals_are_as_long_as_the_spec_says() {
+    let mut batch = slow(2, Executor::new(1).unwrap(), Autoreset::Disabled);
+    batch.step(&[0.5, 1.0]).unwrap();
+    let shown: Vec<_> = batch
+        .records()
+        .map(|r| (&r.achieved[..], &r.desired[..]))
+        .collect();
+    let goal: &[f32] = &[3.0];
+    assert_eq!(shown, [(&[0.5][..], goal), (&[1.0], goal)]);
+}
+
 /// Making a batch can be interrupted too. Catches the one long loop that nobody thinks of.
 #[test]
 fn making_a_batch_can_be_interrupted() {
-    let task = Arc::new(Slow { making: STEP });
+    let task = Slow::new(STEP);
     let made = Batch::with_executor(task, N, Autoreset::NextStep, after(0, 1));
     assert_eq!(made.err(), Some(EnvError::Interrupted));
 }

@@ -57,7 +57,10 @@ fn pattern_step_is_the_plan_played_posture_by_posture() {
         let movement = path.play(&pattern, &state.case, Fidelity::Full, |arm| {
             trail.push(arm.q);
         });
-        assert_eq!((state.outcome, state.arm), (movement.outcome, movement.arm));
+        assert_eq!(
+            (state.progress.outcome, state.arm),
+            (movement.outcome, movement.arm)
+        );
         assert_eq!(state.trail, trail);
 
         let mut arm = babble_body::ArmState::at_rest(state.case.start);
@@ -94,11 +97,11 @@ fn posture_control_plays_the_same_plan() {
                 assert!((state.arm.q[i] - expected[i]).abs() < 1e-6);
             }
             compared += 1;
-            if state.outcome != Outcome::Running {
+            if state.progress.outcome != Outcome::Running {
                 break;
             }
         }
-        let outcome = env.state(0).unwrap().outcome;
+        let outcome = env.state(0).unwrap().progress.outcome;
         if movement.outcome == Outcome::Collision && trail.len() <= path.postures().len() {
             assert_eq!(outcome, Outcome::Collision);
         }

@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use babble_env::case::CasePart;
+use babble_env::progress::SUCCESS_FACTS;
 use babble_env::registry::{TASKS, environment, presets, task};
 use babble_env::{
     AnyTask, Autoreset, Batch, CaseValue, CaseValues, Config, EnvError, Executor, GraspTask,
@@ -39,6 +40,10 @@ fn every_id_makes_environments_that_step() {
             let senses: usize = spec.senses.iter().map(|sense| sense.labels.len()).sum();
             assert_eq!(record.senses.len(), senses, "{}", row.id);
             assert!(spec.outcomes.contains(&record.info.outcome.name()));
+            assert!(spec.facts.starts_with(&SUCCESS_FACTS), "{}", row.id);
+            let goals = [record.achieved.len(), record.desired.len()];
+            assert_eq!(goals, [spec.goal_len(); 2], "{}", row.id);
+            assert!(record.achieved.iter().all(|x| x.is_finite()));
             assert!(
                 row.max_episode_steps
                     .is_none_or(|n| n == spec.max_episode_steps)

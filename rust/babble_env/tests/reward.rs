@@ -3,8 +3,9 @@
 mod playing;
 
 use babble_env::batch::Record;
+use babble_env::progress::IS_SUCCESS;
+use babble_env::tasks::reach::goal_reward;
 use babble_env::tasks::reach::{CaseRequest, ObstacleRequest};
-use babble_env::tasks::reach::{IS_SUCCESS, goal_reward};
 use babble_env::{Autoreset, Batch, Control, Outcome, ReachOptions, ReachTask, Reward, Task};
 use playing::{Actions, batch, control, goal};
 
@@ -81,12 +82,12 @@ fn progress_adds_up_over_an_episode() {
             }
             let state = env.state(0).unwrap();
             assert!((progress - (first - state.distance) / 0.1).abs() < 1e-9);
-            let paid = match state.outcome {
+            let paid = match state.progress.outcome {
                 Outcome::Success => 1.0,
                 Outcome::Collision | Outcome::JointLimit => -1.0,
                 _ => 0.0,
             };
-            assert_eq!(others, paid, "{of}: {}", state.outcome);
+            assert_eq!(others, paid, "{of}: {}", state.progress.outcome);
         }
     }
 }
@@ -157,7 +158,7 @@ fn goal_reward_is_the_steps_reward() {
                     assert_eq!(shown.step.reward, 0.0);
                     continue;
                 }
-                let again = goal_reward(&config, shown.info.achieved, shown.info.desired);
+                let again = goal_reward(&config, &shown.achieved, &shown.desired);
                 assert_eq!(shown.step.reward, again);
                 assert_eq!(shown.step.terminated, of == Control::Pattern);
                 reached += usize::from(again == 0.0);
@@ -199,10 +200,10 @@ fn collision_holds_the_arm_in_goal_form() {
             );
             if let Some(q) = touched_at {
                 assert_eq!((state.arm.q, state.arm.v), (q, [0.0; 2]));
-                assert_eq!(state.outcome, Outcome::Collision);
+                assert_eq!(state.progress.outcome, Outcome::Collision);
                 held += 1;
             }
-            if state.outcome == Outcome::Collision {
+            if state.progress.outcome == Outcome::Collision {
                 touched_at = Some(state.arm.q);
             }
         }

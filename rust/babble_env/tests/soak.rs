@@ -7,7 +7,7 @@ mod playing;
 use std::fmt;
 use std::sync::Arc;
 
-use babble_env::task::{Episode, State};
+use babble_env::episode;
 use babble_env::tasks::grasp::Region;
 use babble_env::{
     Autoreset, Batch, Config, Control, GraspOptions, GraspTask, Purpose, ReachOptions, ReachTask,
@@ -151,7 +151,7 @@ fn play<T: Task>(
     steps: usize,
     seed: u64,
     ask: impl Fn(&mut Batch<T>, usize, &mut Stream),
-    look: impl Fn(&T, &State<T>, &mut Extremes),
+    look: impl Fn(&T, &T::State, &mut Extremes),
 ) -> Extremes {
     let width = task.action_len();
     let senses = task.spec().senses;
@@ -209,7 +209,7 @@ fn play<T: Task>(
         }
         if step % 7 == 0 {
             let mut state = envs.state(step % ENVS).unwrap().clone();
-            T::Episode::check(task, &mut state).unwrap();
+            episode::check(&**task, &mut state).unwrap();
         }
     }
     extremes
@@ -284,7 +284,7 @@ fn soak_reaching(steps: usize) {
             };
             envs.request(i, request).unwrap();
         };
-        let look = |task: &ReachTask, state: &State<ReachTask>, to: &mut Extremes| {
+        let look = |task: &ReachTask, state: &<ReachTask as Task>::State, to: &mut Extremes| {
             let q = task.arm.normalised(state.arm.q);
             assert!(q.iter().all(|q| (-1e-9..=1.0 + 1e-9).contains(q)), "{q:?}");
             to.turn = to.turn.max(state.arm.v[0].abs()).max(state.arm.v[1].abs());
@@ -320,7 +320,7 @@ fn ask_near(envs: &mut Batch<GraspTask>, i: usize, stream: &mut Stream) {
     envs.request(i, near).unwrap();
 }
 
-fn look_at_grasp(task: &GraspTask, state: &State<GraspTask>, to: &mut Extremes) {
+fn look_at_grasp(task: &GraspTask, state: &<GraspTask as Task>::State, to: &mut Extremes) {
     let robot = &task.robot;
     let world = &state.world;
     let depth = robot.penetration(world);

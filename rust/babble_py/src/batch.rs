@@ -32,6 +32,8 @@ pub(crate) struct Batch {
     /// Whether one step takes longer than handing it to a thread.
     long_steps: bool,
     senses: usize,
+    /// Numbers in a goal; 0 without goals.
+    goals: usize,
     /// Names of the facts.
     facts: Vec<Py<PyString>>,
     /// Names of the reward terms.
@@ -65,6 +67,7 @@ impl Batch {
             parts: task.task.case_parts(),
             long_steps: task.task.has_long_steps(),
             senses,
+            goals: spec.goal_len(),
             facts: names(spec.facts),
             terms: names(spec.reward_terms),
         })
@@ -143,17 +146,20 @@ impl Batch {
         self.show_one(py, &**self.envs.read()?)
     }
 
-    /// Achieved and desired goal of environment 0 (2,) \[m\].
+    /// Achieved and desired goal of environment 0; none where the task has no goals.
     fn one_goals<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyArray1<f32>>>> {
+        if self.goals == 0 {
+            return Ok(Vec::new());
+        }
         Ok(self.envs.read()?.record(0).map_or_else(Vec::new, |record| {
-            [record.info.achieved, record.info.desired]
-                .map(|x| PyArray1::from_slice(py, &x))
+            [&record.achieved, &record.desired]
+                .map(|x| PyArray1::from_slice(py, x))
                 .into()
         }))
     }
 
-    /// What all environments showed last, in new arrays of length n: senses, achieved goals, desired
-    /// goals, rewards, terminated, truncated, outcome codes, facts, reward terms.
+    /// What all environments showed last, in new arrays of length n: senses, achieved goals and desired
+    /// goals where the task has them, rewards, terminated, truncated, outcome codes, facts, reward terms.
     fn all<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let envs = &*self.envs.read()?;
         let records: Vec<&Record> = (0..envs.envs()).filter_map(|i| envs.record(i)).collect();
@@ -255,7 +261,10 @@ impl Batch {
 
 impl Batch {
     fn show_one<'py>(&self, py: Python<'py>, envs: &dyn AnyBatch) -> PyResult<Bound<'py, PyTuple>> {
-        let Some(Record { senses, info, step }) = envs.record(0) else {
+        let Some(Record {
+            senses, info, step, ..
+        }) = envs.record(0)
+        else {
             return Ok(PyTuple::empty(py));
         };
         let shown = named(py, &self.facts, &info.facts)?;
@@ -277,10 +286,12 @@ impl Batch {
         let dict = PyDict::new(py);
         let senses = table(py, self.senses, each().map(|r| &r.senses[..]))?;
         dict.set_item("senses", senses)?;
-        let achieved = table(py, 2, each().map(|r| &r.info.achieved[..]))?;
-        dict.set_item("achieved_goal", achieved)?;
-        let desired = table(py, 2, each().map(|r| &r.info.desired[..]))?;
-        dict.set_item("desired_goal", desired)?;
+        if self.goals > 0 {
+            let achieved = table(py, self.goals, each().map(|r| &r.achieved[..]))?;
+            dict.set_item("achieved_goal", achieved)?;
+            let desired = table(py, self.goals, each().map(|r| &r.desired[..]))?;
+            dict.set_item("desired_goal", desired)?;
+        }
         let reward = PyArray1::from_iter(py, each().map(|r| r.step.reward));
         dict.set_item("reward", reward)?;
         let terminated = PyArray1::from_iter(py, each().map(|r| r.step.terminated));

@@ -89,8 +89,7 @@ impl Task {
         achieved: PyReadonlyArray2<'py, f32>,
         desired: PyReadonlyArray2<'py, f32>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let goals = self.task.spec().goals;
-        let width = goals.first().map_or(0, |goal| goal.labels.len());
+        let width = self.task.spec().goal_len();
         let achieved = convert::wide_rows(&achieved, width, "achieved_goal")?;
         let desired = convert::wide_rows(&desired, width, "desired_goal")?;
         let pairs = achieved.iter().zip(&desired);

@@ -116,7 +116,7 @@ pub(crate) fn play(
         env.step(&action).unwrap();
         look(env);
         if super::ended(&record(env)) {
-            return env.state(0).unwrap().outcome;
+            return env.state(0).unwrap().progress.outcome;
         }
     }
 }

@@ -1,36 +1,34 @@
 //! Whether a state that somebody else wrote is one of this task's episodes.
 
 use super::enclosure::Grip;
-use super::spec::OUTCOMES;
 use super::state::{GraspState, setup};
 use super::task::GraspTask;
-use crate::check::{age, ensure, refused, within};
+use crate::check::{ensure, refused, within};
 use crate::error::EnvError;
 use crate::options::Control;
-use crate::task::Phase;
+use crate::progress::Phase;
 
 /// No force \[N\], distance \[m\] or angle \[rad\] gets there.
 const MOST: f64 = 1e18;
 
-/// As [`crate::task::Episode::check`]: every number is finite and in bounds, but with the tree engine
+/// As [`crate::Task::check`]: every number is finite and in bounds, but with the tree engine
 /// a state that passes need not be one that some episode did reach.
 pub(super) fn check(task: &GraspTask, state: &mut GraspState) -> Result<(), EnvError> {
     let numbers = &task.config.grasp;
-    age(state.phase, state.steps, task.options.max_episode_steps)?;
-    ensure(OUTCOMES.contains(&state.outcome), || {
-        format!("outcome {} is none of grasping", state.outcome)
-    })?;
     check_case(task, state)?;
     check_senses(task, state)?;
-    state.enclosure.check(numbers, state.steps)?;
+    state.enclosure.check(numbers, state.progress.steps)?;
     ensure(
         task.robot.has_support(&state.world) == (state.enclosure.grip == Grip::Open),
         || "the support goes when a grasp is tried, not before or after".to_owned(),
     )?;
     check_trail(task, state)?;
-    state.request.check(task).map_err(|error| refused(&error))?;
-    ensure(state.stream.moves(), || "stream stands still".to_owned())?;
-    let steps = u64::from(state.steps) * u64::from(numbers.physics_steps);
+    state
+        .lifecycle
+        .request
+        .check(task)
+        .map_err(|error| refused(&error))?;
+    let steps = u64::from(state.progress.steps) * u64::from(numbers.physics_steps);
     let begin = setup(task, &state.case);
     let checked = task.robot.check(&mut state.world, &begin, steps);
     checked.map_err(|error| refused(&error))
@@ -50,7 +48,7 @@ fn check_case(task: &GraspTask, state: &GraspState) -> Result<(), EnvError> {
         within(what, [&libm::hypot(x, y)], [0.0, farthest])?;
     }
     // Before the first reset there is no goal in any form.
-    let goal = case.goal.is_some() == task.options.goal || state.phase == Phase::Fresh;
+    let goal = case.goal.is_some() == task.options.goal || state.lifecycle.phase == Phase::Fresh;
     ensure(goal, || {
         "a goal is there with obs = \"goal\" alone".to_owned()
     })?;
@@ -78,8 +76,11 @@ fn check_senses(task: &GraspTask, state: &GraspState) -> Result<(), EnvError> {
 
 fn check_trail(task: &GraspTask, state: &GraspState) -> Result<(), EnvError> {
     let moments = state.trail.len();
-    ensure(moments <= state.steps as usize + 1, || {
-        format!("{moments} moments were recorded in {} steps", state.steps)
+    ensure(moments <= state.progress.steps as usize + 1, || {
+        format!(
+            "{moments} moments were recorded in {} steps",
+            state.progress.steps
+        )
     })?;
     let joints = task.robot.joint_angles(&state.world).len();
     for moment in &state.trail {

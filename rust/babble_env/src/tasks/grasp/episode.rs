@@ -3,40 +3,21 @@
 use babble_body::robot::{MuscleCommand, MuscleCommands, Posture, Touch, towards};
 
 use super::case::{GraspCase, GraspRequest};
-use super::check;
 use super::enclosure::{Contacts, Enclosure, Grip};
 use super::sight::{self, FOVEA_NEURONS};
-use super::state::{FACTS, GraspState, Moment, setup};
+use super::state::{GraspState, Moment, setup};
 use super::task::GraspTask;
 use crate::config::Config;
-use crate::episode::Ending;
-use crate::error::EnvError;
+use crate::episode::clipped;
 use crate::options::{Control, Reward};
 use crate::outcome::Outcome;
-use crate::stream::Stream;
-use crate::task::{self, Episode, EpisodeInfo, MAX_FACTS, MAX_TERMS, Phase, Step};
+use crate::progress::{Lifecycle, Progress};
+use crate::task::{self, MAX_TERMS};
 
 /// Distance that the progress reward calls 1 \[m\].
 const PROGRESS_UNIT_M: f64 = 0.1;
 /// An object this far below the arm's plane was dropped \[m\].
 const DROPPED_M: f64 = 0.1;
-
-/// One episode: its state and what follows from it.
-#[derive(Debug, Clone)]
-pub struct Grasp {
-    state: GraspState,
-    fovea: Box<[f32; FOVEA_NEURONS]>,
-    /// What the user asks of the cases from the next reset on, if it can be played.
-    asked: Option<GraspRequest>,
-}
-
-/// A new episode that was drawn and not begun yet.
-#[derive(Debug)]
-pub struct NextEpisode {
-    case: GraspCase,
-    request: GraspRequest,
-    stream: Stream,
-}
 
 /// What the physics steps of one control period gave.
 #[derive(Default)]
@@ -63,172 +44,105 @@ impl Period {
     }
 }
 
-impl Episode for Grasp {
-    type Task = GraspTask;
-    type Request = GraspRequest;
-    type NextEpisode = NextEpisode;
-    type State = GraspState;
+/// The state before the first reset: the middle posture, with the object far off.
+pub(super) fn fresh(task: &GraspTask, lifecycle: Lifecycle<GraspRequest>) -> GraspState {
+    let case = GraspCase {
+        start: task.arm.denormalised([0.5, 0.5]),
+        object: [0.0, task.arm.length()],
+        diameter: task.config.grasp.diameters_m[0],
+        goal: None,
+        obstacle: None,
+    };
+    at_start(task, case, lifecycle)
+}
 
-    fn new(task: &GraspTask, stream: Stream) -> Self {
-        let start = task.arm.denormalised([0.5, 0.5]);
-        let case = GraspCase {
-            start,
-            object: [0.0, task.arm.length()],
-            diameter: task.config.grasp.diameters_m[0],
-            goal: None,
-            obstacle: None,
-        };
-        let mut state = fresh(task, case, GraspRequest::default(), stream);
-        state.phase = Phase::Fresh;
-        Self::from_state(task, state)
+pub(super) fn begin(task: &GraspTask, state: &mut GraspState, case: GraspCase) {
+    *state = at_start(task, case, state.lifecycle.clone());
+    let scene = sight::scene(task, &state.world, &case);
+    state.gaze = sight::foveate(task, &scene);
+    state.record(task);
+}
+
+/// The edges in the fovea.
+pub(super) fn look(task: &GraspTask, state: &GraspState) -> Box<[f32; FOVEA_NEURONS]> {
+    let mut fovea = Box::new([0.0; FOVEA_NEURONS]);
+    let scene = sight::scene(task, &state.world, &state.case);
+    sight::look(task, &scene, state.gaze, &mut fovea);
+    fovea
+}
+
+/// One control step, and the eye after it.
+pub(super) fn advance(
+    task: &GraspTask,
+    state: &mut GraspState,
+    edges: &mut [f32; FOVEA_NEURONS],
+    action: &[f32],
+) -> bool {
+    // In the goal form a failure leaves everything as it is until the time limit.
+    if !state.failed() {
+        state.advance(task, clipped(action));
+        let scene = sight::scene(task, &state.world, &state.case);
+        state.gaze = sight::follow(task, &scene, state.gaze);
+        sight::look(task, &scene, state.gaze, edges);
     }
-
-    fn check(task: &GraspTask, state: &mut GraspState) -> Result<(), EnvError> {
-        check::check(task, state)
-    }
-
-    fn from_state(task: &GraspTask, state: GraspState) -> Self {
-        let mut episode = Self {
-            state,
-            fovea: Box::new([0.0; FOVEA_NEURONS]),
-            asked: None,
-        };
-        let scene = sight::scene(task, &episode.state.world, &episode.state.case);
-        sight::look(task, &scene, episode.state.gaze, &mut episode.fovea);
-        episode
-    }
-
-    fn state(&self) -> &GraspState {
-        &self.state
-    }
-
-    fn phase(&self) -> Phase {
-        self.state.phase
-    }
-
-    fn seed(&mut self, stream: Stream) {
-        self.state.stream = stream;
-    }
-
-    fn request(&mut self, request: GraspRequest) {
-        self.asked = Some(request);
-    }
-
-    fn draw(&mut self, task: &GraspTask) -> Result<NextEpisode, EnvError> {
-        let request = self.asked.take().unwrap_or(self.state.request);
-        let mut stream = self.state.stream.clone();
-        Ok(NextEpisode {
-            case: request.draw(task, &mut stream)?,
-            request,
-            stream,
-        })
-    }
-
-    fn begin(&mut self, task: &GraspTask, drawn: NextEpisode) {
-        let NextEpisode {
-            case,
-            request,
-            stream,
-        } = drawn;
-        self.state = fresh(task, case, request, stream);
-        let scene = sight::scene(task, &self.state.world, &case);
-        self.state.gaze = sight::foveate(task, &scene);
-        sight::look(task, &scene, self.state.gaze, &mut self.fovea);
-        self.state.record(task);
-    }
-
-    fn abandon(&mut self) {
-        self.state.phase = Phase::Fresh;
-    }
-
-    fn step(&mut self, task: &GraspTask, action: &[f32]) -> Result<Step, EnvError> {
-        if self.state.phase != Phase::Running {
-            return Err(EnvError::NeedsReset { env: 0 });
-        }
-        let action = std::array::from_fn(|i| f64::from(action[i]).clamp(-1.0, 1.0));
-        let before = self.state.potential(task);
-        // In the goal form a failure leaves everything as it is until the time limit.
-        if !self.state.failed() {
-            self.state.advance(task, action);
-            let scene = sight::scene(task, &self.state.world, &self.state.case);
-            self.state.gaze = sight::follow(task, &scene, self.state.gaze);
-            sight::look(task, &scene, self.state.gaze, &mut self.fovea);
-        }
-        self.state.record(task);
-        Ok(self.state.judge(task, before))
-    }
-
-    fn observe(&self, task: &GraspTask, out: &mut [f32]) {
-        let state = &self.state;
-        let (eye, out) = out.split_at_mut(2);
-        let gaze = task.eye.normalised(state.gaze);
-        eye.copy_from_slice(&gaze.map(|x| x as f32));
-        let (fovea, out) = out.split_at_mut(FOVEA_NEURONS);
-        fovea.copy_from_slice(&*self.fovea);
-        let posture = task.robot.posture(&state.world);
-        let shares = task.robot.normalised(posture);
-        let stretch = task.stretch_bounds();
-        let most = task.config.grasp.touch_max_n;
-        let limit = f64::from(task.options.max_episode_steps);
-        for i in 0..4 {
-            out[i] = shares[i].clamp(0.0, 1.0) as f32;
-            out[4 + i] = (state.equilibrium[i] - posture[i]).clamp(-stretch[i], stretch[i]) as f32;
-        }
-        for (out, force) in out[8..11].iter_mut().zip(state.touch) {
-            *out = (force / most).min(1.0) as f32;
-        }
-        out[11] = (f64::from(state.steps) / limit).min(1.0) as f32;
-    }
-
-    fn info(&self, task: &GraspTask) -> EpisodeInfo {
-        let state = &self.state;
-        let mut facts = [false; MAX_FACTS];
-        facts[..FACTS.len()].copy_from_slice(&[
-            state.is_success,
-            state.ever_success,
-            state.reach,
-            state.palm_reach,
-            state.enclosure.grip == Grip::Held,
-        ]);
-        EpisodeInfo {
-            achieved: state.achieved(task),
-            desired: state.desired(),
-            outcome: state.outcome,
-            facts,
-        }
+    state.record(task);
+    if task.options.goal {
+        goal_reward(&task.config, &state.achieved(task), &state.desired()) == 0.0
+    } else {
+        state.enclosure.grip == Grip::Held
     }
 }
 
+pub(super) fn observe(
+    task: &GraspTask,
+    state: &GraspState,
+    edges: &[f32; FOVEA_NEURONS],
+    out: &mut [f32],
+) {
+    let (eye, out) = out.split_at_mut(2);
+    let gaze = task.eye.normalised(state.gaze);
+    eye.copy_from_slice(&gaze.map(|x| x as f32));
+    let (fovea, out) = out.split_at_mut(FOVEA_NEURONS);
+    fovea.copy_from_slice(edges);
+    let posture = task.robot.posture(&state.world);
+    let shares = task.robot.normalised(posture);
+    let stretch = task.stretch_bounds();
+    let most = task.config.grasp.touch_max_n;
+    let limit = f64::from(task.options.max_episode_steps);
+    for i in 0..4 {
+        out[i] = shares[i].clamp(0.0, 1.0) as f32;
+        out[4 + i] = (state.equilibrium[i] - posture[i]).clamp(-stretch[i], stretch[i]) as f32;
+    }
+    for (out, force) in out[8..11].iter_mut().zip(state.touch) {
+        *out = (force / most).min(1.0) as f32;
+    }
+    out[11] = (f64::from(state.progress.steps) / limit).min(1.0) as f32;
+}
+
 /// The state at the beginning of an episode; the eye has not turned yet.
-fn fresh(task: &GraspTask, case: GraspCase, request: GraspRequest, stream: Stream) -> GraspState {
+fn at_start(task: &GraspTask, case: GraspCase, lifecycle: Lifecycle<GraspRequest>) -> GraspState {
     let begin = setup(task, &case);
-    let mut state = GraspState {
-        world: task.robot.world(&begin),
+    let world = task.robot.world(&begin);
+    GraspState {
+        distance: task.pocket_offset(&world, case.radius()).norm(),
+        world,
         equilibrium: begin.posture,
         case,
         gaze: task.eye.rest(),
         touch: [0.0; 3],
         enclosure: Enclosure::default(),
         reflex: false,
-        steps: 0,
-        outcome: Outcome::Running,
-        is_success: false,
-        ever_success: false,
+        progress: Progress::START,
         reach: false,
         palm_reach: false,
-        distance: 0.0,
-        phase: Phase::Running,
-        request,
-        stream,
+        lifecycle,
         trail: Vec::new(),
-    };
-    state.distance = task.pocket_offset(&state.world, case.radius()).norm();
-    state
+    }
 }
 
 /// What the progress reward is the change of.
-#[derive(Clone, Copy)]
-struct Potential {
+#[derive(Debug, Clone, Copy)]
+pub struct Potential {
     distance: f64,
     enclosure: f64,
 }
@@ -253,7 +167,7 @@ impl GraspState {
         let steps = f64::from(task.config.grasp.physics_steps);
         self.touch = period.forces.map(|sum| sum / steps);
         self.distance = task.pocket_offset(&self.world, self.case.radius()).norm();
-        self.outcome = if period.collision {
+        self.progress.outcome = if period.collision {
             Outcome::Collision
         } else {
             self.follow_grip(task, period.contacts)
@@ -317,7 +231,7 @@ impl GraspState {
         }
     }
 
-    fn potential(&self, task: &GraspTask) -> Potential {
+    pub(super) fn potential(&self, task: &GraspTask) -> Potential {
         Potential {
             distance: self.distance,
             enclosure: self.enclosure.share(&task.config.grasp),
@@ -325,38 +239,16 @@ impl GraspState {
     }
 
     fn failed(&self) -> bool {
-        matches!(self.outcome, Outcome::Collision | Outcome::Lost)
+        matches!(self.progress.outcome, Outcome::Collision | Outcome::Lost)
     }
 
-    /// Success, reward and end of the step just made.
-    fn judge(&mut self, task: &GraspTask, before: Potential) -> Step {
-        let done = if task.options.goal {
-            goal_reward(&task.config, self.achieved(task), self.desired()) == 0.0
-        } else {
-            self.enclosure.grip == Grip::Held
-        };
-        let ending = Ending {
-            goal: task.options.goal,
-            single_step: false,
-            max_steps: task.options.max_episode_steps,
-        };
-        let [terminated, truncated] = ending.conclude(self.progress(), done);
-        let terms = self.reward_terms(task, before);
-        Step {
-            reward: terms.iter().sum(),
-            terms,
-            terminated,
-            truncated,
-        }
-    }
-
-    fn reward_terms(&self, task: &GraspTask, before: Potential) -> [f64; MAX_TERMS] {
+    pub(super) fn reward_terms(&self, task: &GraspTask, before: Potential) -> [f64; MAX_TERMS] {
         let mut terms = [0.0; MAX_TERMS];
         if task.options.goal {
-            terms[0] = goal_reward(&task.config, self.achieved(task), self.desired());
+            terms[0] = goal_reward(&task.config, &self.achieved(task), &self.desired());
             return terms;
         }
-        let success = f64::from(u8::from(self.outcome == Outcome::Success));
+        let success = f64::from(u8::from(self.progress.outcome == Outcome::Success));
         match task.options.reward {
             Reward::Sparse => terms[0] = success,
             Reward::Progress => {
@@ -374,7 +266,7 @@ impl GraspState {
 
     /// Where the object is; once it failed to be carried, beyond all goals, so that an object dropped
     /// at its goal earns nothing.
-    fn achieved(&self, task: &GraspTask) -> [f32; 2] {
+    pub(super) fn achieved(&self, task: &GraspTask) -> [f32; 2] {
         let reach = task.goal_bound() as f32;
         if task.options.goal && self.failed() {
             return [reach; 2];
@@ -383,7 +275,7 @@ impl GraspState {
         [centre.x, centre.y].map(|x| (x as f32).clamp(-reach, reach))
     }
 
-    fn desired(&self) -> [f32; 2] {
+    pub(super) fn desired(&self) -> [f32; 2] {
         self.case.goal.unwrap_or(self.case.object).map(|x| x as f32)
     }
 
@@ -406,6 +298,6 @@ impl GraspState {
 ///
 /// Positions are compared as the f32 numbers that an agent stores.
 #[must_use]
-pub fn goal_reward(config: &Config, achieved: [f32; 2], desired: [f32; 2]) -> f64 {
+pub fn goal_reward(config: &Config, achieved: &[f32], desired: &[f32]) -> f64 {
     task::goal_reward(config.grasp.success_radius_m, achieved, desired)
 }

@@ -5,28 +5,36 @@ use image::RgbImage;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::case::GraspRequest;
+use super::case::{GraspCase, GraspRequest};
+use super::enclosure::Grip;
 use super::entry::ENTRY;
-use super::episode::{Grasp, goal_reward};
+use super::episode::{self, Potential, goal_reward};
 use super::options::GraspOptions;
 use super::sight::FOVEA_NEURONS;
 use super::state::GraspState;
 use super::task::GraspTask;
-use super::{picture, protocol, spec};
+use super::{check, picture, protocol, spec};
 use crate::case::{CasePart, CaseValues};
 use crate::config::Config;
 use crate::error::EnvError;
 use crate::executor::Executor;
+use crate::outcome::Outcome;
 use crate::picture::View;
+use crate::progress::{Ending, Lifecycle, Progress};
 use crate::spec::Spec;
-use crate::stream::Purpose;
-use crate::task::Task;
+use crate::stream::{Purpose, Stream};
+use crate::task::{MAX_TERMS, Task};
 
 impl Task for GraspTask {
-    type Episode = Grasp;
+    type Request = GraspRequest;
+    type Drawn = GraspCase;
+    type State = GraspState;
+    type Derived = Box<[f32; FOVEA_NEURONS]>;
+    type Potential = Potential;
 
     const NAME: &'static str = "grasping";
     const MAGIC: [u8; 4] = *b"BBGS";
+    const OUTCOMES: &'static [Outcome] = &spec::OUTCOMES;
     const CASE_PARTS: &'static [CasePart] = ENTRY.case_parts;
 
     fn min_per_thread(&self) -> usize {
@@ -76,12 +84,75 @@ impl Task for GraspTask {
         self.robot.description()
     }
 
+    fn shared(state: &GraspState) -> (&Progress, &Lifecycle<GraspRequest>) {
+        (&state.progress, &state.lifecycle)
+    }
+
+    fn shared_mut(state: &mut GraspState) -> (&mut Progress, &mut Lifecycle<GraspRequest>) {
+        (&mut state.progress, &mut state.lifecycle)
+    }
+
+    fn fresh(&self, lifecycle: Lifecycle<GraspRequest>) -> GraspState {
+        episode::fresh(self, lifecycle)
+    }
+
+    fn check(&self, state: &mut GraspState) -> Result<(), EnvError> {
+        check::check(self, state)
+    }
+
+    fn derive(&self, state: &GraspState) -> Self::Derived {
+        episode::look(self, state)
+    }
+
+    fn draw(&self, request: &GraspRequest, stream: &mut Stream) -> Result<GraspCase, EnvError> {
+        request.draw(self, stream)
+    }
+
+    fn begin(&self, state: &mut GraspState, case: GraspCase) {
+        episode::begin(self, state, case);
+    }
+
+    fn ending(&self) -> Ending {
+        Ending {
+            goal: self.options.goal,
+            single_step: false,
+            max_steps: self.options.max_episode_steps,
+        }
+    }
+
+    fn potential(&self, state: &GraspState) -> Potential {
+        state.potential(self)
+    }
+
+    fn advance(
+        &self,
+        state: &mut GraspState,
+        edges: &mut Self::Derived,
+        action: &[f32],
+    ) -> Result<bool, EnvError> {
+        Ok(episode::advance(self, state, edges, action))
+    }
+
+    fn reward_terms(&self, state: &GraspState, before: Potential) -> [f64; MAX_TERMS] {
+        state.reward_terms(self, before)
+    }
+
+    fn observe(&self, state: &GraspState, edges: &Self::Derived, out: &mut [f32]) {
+        episode::observe(self, state, edges, out);
+    }
+
+    fn goals(&self, state: &GraspState, achieved: &mut [f32], desired: &mut [f32]) {
+        achieved.copy_from_slice(&state.achieved(self));
+        desired.copy_from_slice(&state.desired());
+    }
+
+    fn facts(&self, state: &GraspState, out: &mut [bool]) {
+        let held = state.enclosure.grip == Grip::Held;
+        out[..3].copy_from_slice(&[state.reach, state.palm_reach, held]);
+    }
+
     fn goal_reward(&self, achieved: &[f32], desired: &[f32]) -> f64 {
-        goal_reward(
-            &self.config,
-            [0, 1].map(|i| achieved[i]),
-            [0, 1].map(|i| desired[i]),
-        )
+        goal_reward(&self.config, achieved, desired)
     }
 
     fn request(&self, asked: &CaseValues) -> GraspRequest {

@@ -7,13 +7,17 @@ use serde::{Deserialize, Serialize};
 use super::case::{GraspCase, GraspRequest};
 use super::enclosure::Enclosure;
 use super::task::GraspTask;
-use crate::episode::Progress;
-use crate::outcome::Outcome;
-use crate::stream::Stream;
-use crate::task::Phase;
+use crate::progress::{Lifecycle, Progress, SUCCESS_FACTS};
 
 /// What is true or false of an episode.
-pub const FACTS: [&str; 5] = ["is_success", "ever_success", "reach", "palm_reach", "held"];
+pub const FACTS: [&str; 5] = [
+    SUCCESS_FACTS[0],
+    SUCCESS_FACTS[1],
+    "reach",
+    "palm_reach",
+    "held",
+];
+
 /// A recorded moment, for pictures.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Moment {
@@ -28,10 +32,6 @@ pub struct Moment {
 }
 
 /// Everything that changes: what a snapshot holds.
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "each is a fact of the episode"
-)]
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct GraspState {
     /// Arm, hand, object, support and obstacle.
@@ -48,26 +48,16 @@ pub struct GraspState {
     pub enclosure: Enclosure,
     /// Whether the reflex has closed the hand.
     pub reflex: bool,
-    /// Control steps since the reset.
-    pub steps: u32,
-    /// How it stands.
-    pub outcome: Outcome,
-    /// Whether the task is done now.
-    pub is_success: bool,
-    /// Whether it ever was.
-    pub ever_success: bool,
+    /// Clock and result.
+    pub progress: Progress,
     /// Whether any part of arm or hand has touched the object.
     pub reach: bool,
     /// Whether the palm has.
     pub palm_reach: bool,
     /// Distance of the object's centre from where the palm would hold it \[m\].
     pub distance: f64,
-    /// Whether the episode runs.
-    pub phase: Phase,
-    /// What the user asked of the cases, kept for autoresets.
-    pub request: GraspRequest,
-    /// Random numbers for the cases to come.
-    pub stream: Stream,
+    /// What decides the next episode.
+    pub lifecycle: Lifecycle<GraspRequest>,
     /// Moments at the end of each control period, when they are recorded.
     pub trail: Vec<Moment>,
 }
@@ -82,18 +72,5 @@ pub(super) fn setup(task: &GraspTask, case: &GraspCase) -> Setup {
         },
         support: true,
         obstacle: case.obstacle,
-    }
-}
-
-impl GraspState {
-    /// Clock and result.
-    pub(super) fn progress(&mut self) -> Progress<'_> {
-        Progress {
-            phase: &mut self.phase,
-            steps: &mut self.steps,
-            outcome: &mut self.outcome,
-            is_success: &mut self.is_success,
-            ever_success: &mut self.ever_success,
-        }
     }
 }

@@ -1,28 +1,23 @@
 //! Whether a state that somebody else wrote is one of this task's episodes.
 
 use super::case::ReachCase;
-use super::spec::OUTCOMES;
 use super::state::ReachState;
 use super::task::ReachTask;
-use crate::check::{MARGIN, age, ensure, refused, within};
+use crate::check::{MARGIN, ensure, refused, within};
 use crate::error::EnvError;
 use crate::options::Control;
 
-/// As [`crate::task::Episode::check`]: every number is finite and within what an episode can reach,
+/// As [`crate::Task::check`]: every number is finite and within what an episode can reach,
 /// but a state that passes need not be one that some episode did reach.
 pub(super) fn check(task: &ReachTask, state: &ReachState) -> Result<(), EnvError> {
-    age(state.phase, state.steps, task.options.max_episode_steps)?;
-    ensure(OUTCOMES.contains(&state.outcome), || {
-        format!("outcome {} is none of reaching", state.outcome)
-    })?;
     check_arm(task, state)?;
     check_case(task, &state.case)?;
     within("gaze.pan", [&state.gaze.pan], task.eye.ranges()[0])?;
     within("gaze.tilt", [&state.gaze.tilt], task.eye.ranges()[1])?;
     let farthest = 2.0 * task.arm.length();
     within("distance", [&state.distance], [0.0, farthest])?;
-    state.request.check(task).map_err(|error| refused(&error))?;
-    ensure(state.stream.moves(), || "stream stands still".to_owned())?;
+    let request = &state.lifecycle.request;
+    request.check(task).map_err(|error| refused(&error))?;
     check_trail(task, state)
 }
 
@@ -62,7 +57,7 @@ fn check_case(task: &ReachTask, case: &ReachCase) -> Result<(), EnvError> {
 fn check_trail(task: &ReachTask, state: &ReachState) -> Result<(), EnvError> {
     let steps = match task.options.control {
         Control::Pattern => task.config.reach.movement_steps() + task.settle_steps(),
-        _ => state.steps as usize,
+        _ => state.progress.steps as usize,
     };
     let moments = state.trail.len();
     ensure(moments <= steps + 1, || {

@@ -8,21 +8,23 @@ use serde_json::{Value, json};
 
 use super::config::ReachConfig;
 use super::entry::ENTRY;
-use super::episode::{Reach, goal_reward};
+use super::episode::{self, Drawn, Sight, goal_reward};
 use super::options::ReachOptions;
 use super::request::CaseRequest;
 use super::state::{ReachState, SENSES};
 use super::task::ReachTask;
-use super::{picture, protocol, spec};
+use super::{check, picture, protocol, spec};
 use crate::case::{CasePart, CaseValues};
 use crate::config::Config;
 use crate::error::EnvError;
 use crate::executor::Executor;
 use crate::options::Control;
+use crate::outcome::Outcome;
 use crate::picture::View;
+use crate::progress::{Ending, Lifecycle, Progress};
 use crate::spec::Spec;
-use crate::stream::Purpose;
-use crate::task::Task;
+use crate::stream::{Purpose, Stream};
+use crate::task::{MAX_TERMS, Task};
 
 /// The part of a config that reaching depends on.
 #[derive(Serialize)]
@@ -33,10 +35,15 @@ struct Fingerprint<'a> {
 }
 
 impl Task for ReachTask {
-    type Episode = Reach;
+    type Request = CaseRequest;
+    type Drawn = Drawn;
+    type State = ReachState;
+    type Derived = Sight;
+    type Potential = f64;
 
     const NAME: &'static str = "reaching";
     const MAGIC: [u8; 4] = *b"BBRS";
+    const OUTCOMES: &'static [Outcome] = &spec::OUTCOMES;
     const CASE_PARTS: &'static [CasePart] = ENTRY.case_parts;
 
     fn min_per_thread(&self) -> usize {
@@ -96,12 +103,71 @@ impl Task for ReachTask {
         description::reaching(&self.config.body).to_vec()
     }
 
+    fn shared(state: &ReachState) -> (&Progress, &Lifecycle<CaseRequest>) {
+        (&state.progress, &state.lifecycle)
+    }
+
+    fn shared_mut(state: &mut ReachState) -> (&mut Progress, &mut Lifecycle<CaseRequest>) {
+        (&mut state.progress, &mut state.lifecycle)
+    }
+
+    fn fresh(&self, lifecycle: Lifecycle<CaseRequest>) -> ReachState {
+        episode::fresh(self, lifecycle)
+    }
+
+    fn check(&self, state: &mut ReachState) -> Result<(), EnvError> {
+        check::check(self, state)
+    }
+
+    fn derive(&self, state: &ReachState) -> Sight {
+        Sight::new(self, state)
+    }
+
+    fn draw(&self, request: &CaseRequest, stream: &mut Stream) -> Result<Drawn, EnvError> {
+        episode::draw(self, request, stream)
+    }
+
+    fn begin(&self, state: &mut ReachState, drawn: Drawn) {
+        episode::begin(self, state, drawn);
+    }
+
+    fn ending(&self) -> Ending {
+        Ending {
+            goal: self.options.goal,
+            single_step: self.options.control == Control::Pattern,
+            max_steps: self.options.max_episode_steps,
+        }
+    }
+
+    fn potential(&self, state: &ReachState) -> f64 {
+        state.distance
+    }
+
+    fn advance(
+        &self,
+        state: &mut ReachState,
+        _: &mut Sight,
+        action: &[f32],
+    ) -> Result<bool, EnvError> {
+        episode::advance(self, state, action)
+    }
+
+    fn reward_terms(&self, state: &ReachState, before: f64) -> [f64; MAX_TERMS] {
+        episode::reward_terms(self, state, before)
+    }
+
+    fn observe(&self, state: &ReachState, sight: &Sight, out: &mut [f32]) {
+        episode::observe(self, state, sight, out);
+    }
+
+    fn goals(&self, state: &ReachState, achieved: &mut [f32], desired: &mut [f32]) {
+        let [tip, target] = episode::goals(self, state);
+        achieved.copy_from_slice(&tip);
+        desired.copy_from_slice(&target);
+    }
+
     fn goal_reward(&self, achieved: &[f32], desired: &[f32]) -> f64 {
-        goal_reward(
-            &self.config,
-            [0, 1].map(|i| achieved[i]),
-            [0, 1].map(|i| desired[i]),
-        )
+        goal_reward(&self.config, achieved, desired)
     }
 
     fn request(&self, asked: &CaseValues) -> CaseRequest {

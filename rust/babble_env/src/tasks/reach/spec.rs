@@ -3,10 +3,10 @@
 use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::state::FACTS;
 use super::task::ReachTask;
 use crate::options::{Control, Reward};
 use crate::outcome::Outcome;
+use crate::progress::SUCCESS_FACTS;
 use crate::spec::{Entry, Spec};
 
 /// How an episode of reaching can stand or end.
@@ -25,7 +25,7 @@ pub(super) fn spec(task: &ReachTask) -> Spec {
         goals: goals(task),
         action: action(task),
         reward_terms: reward_terms(task),
-        facts: &FACTS,
+        facts: &SUCCESS_FACTS,
         outcomes: OUTCOMES.map(Outcome::name).to_vec(),
         max_episode_steps: task.options.max_episode_steps,
         control_hz: 1.0 / task.config.reach.control_period_s,

@@ -4,7 +4,7 @@ use image::{Rgb, RgbImage};
 use serde::Serialize;
 
 use super::entry::ENTRY;
-use super::episode::{FACTS, Point, PointState, TargetRequest};
+use super::episode::{self, PointState, TargetRequest};
 use super::task::PointTask;
 use crate::case::{CasePart, CaseValues};
 use crate::config::Config;
@@ -12,14 +12,21 @@ use crate::error::EnvError;
 use crate::executor::Executor;
 use crate::outcome::Outcome;
 use crate::picture::{View, no_such_frame};
+use crate::progress::{Ending, Lifecycle, Progress, SUCCESS_FACTS};
 use crate::spec::{Entry, Spec};
 use crate::stream::{Purpose, Stream};
-use crate::task::Task;
+use crate::task::{MAX_TERMS, Task};
 
 impl Task for PointTask {
-    type Episode = Point;
+    type Request = TargetRequest;
+    type Drawn = [f64; 2];
+    type State = PointState;
+    type Derived = ();
+    type Potential = ();
+
     const NAME: &'static str = "moving a point";
     const MAGIC: [u8; 4] = *b"BBPT";
+    const OUTCOMES: &'static [Outcome] = &[Outcome::Running, Outcome::Success, Outcome::Timeout];
     const CASE_PARTS: &'static [CasePart] = ENTRY.case_parts;
 
     fn config(&self) -> &Config {
@@ -56,10 +63,11 @@ impl Task for PointTask {
             goals: vec![],
             action: entry("action", &["x", "y"], -1.0, "velocity, 0.1 m a step"),
             reward_terms: &["success"],
-            facts: &FACTS,
-            outcomes: [Outcome::Running, Outcome::Success, Outcome::Timeout]
-                .map(Outcome::name)
-                .to_vec(),
+            facts: &SUCCESS_FACTS,
+            outcomes: Self::OUTCOMES
+                .iter()
+                .map(|outcome| outcome.name())
+                .collect(),
             max_episode_steps: self.max_episode_steps,
             control_hz: 20.0,
         }
@@ -67,6 +75,60 @@ impl Task for PointTask {
 
     fn fingerprint(&self) -> impl Serialize {
         self.max_episode_steps
+    }
+
+    fn shared(state: &PointState) -> (&Progress, &Lifecycle<TargetRequest>) {
+        (&state.progress, &state.lifecycle)
+    }
+
+    fn shared_mut(state: &mut PointState) -> (&mut Progress, &mut Lifecycle<TargetRequest>) {
+        (&mut state.progress, &mut state.lifecycle)
+    }
+
+    fn fresh(&self, lifecycle: Lifecycle<TargetRequest>) -> PointState {
+        episode::fresh(lifecycle)
+    }
+
+    fn check(&self, state: &mut PointState) -> Result<(), EnvError> {
+        episode::check(state)
+    }
+
+    fn derive(&self, _: &PointState) {}
+
+    fn draw(&self, request: &TargetRequest, stream: &mut Stream) -> Result<[f64; 2], EnvError> {
+        episode::draw(request, stream)
+    }
+
+    fn begin(&self, state: &mut PointState, target: [f64; 2]) {
+        episode::begin(self, state, target);
+    }
+
+    fn ending(&self) -> Ending {
+        Ending {
+            goal: false,
+            single_step: false,
+            max_steps: self.max_episode_steps,
+        }
+    }
+
+    fn potential(&self, _: &PointState) {}
+
+    fn advance(
+        &self,
+        state: &mut PointState,
+        (): &mut (),
+        action: &[f32],
+    ) -> Result<bool, EnvError> {
+        Ok(episode::advance(self, state, action))
+    }
+
+    fn reward_terms(&self, state: &PointState, (): ()) -> [f64; MAX_TERMS] {
+        let success = f64::from(u8::from(state.progress.is_success));
+        [success, 0.0, 0.0, 0.0]
+    }
+
+    fn observe(&self, state: &PointState, (): &(), out: &mut [f32]) {
+        episode::observe(self, state, out);
     }
 
     fn request(&self, asked: &CaseValues) -> TargetRequest {

@@ -7,5 +7,5 @@ mod face;
 mod task;
 
 pub(crate) use entry::ENTRY;
-pub use episode::{Point, PointState, TargetRequest};
+pub use episode::{PointState, TargetRequest};
 pub use task::PointTask;

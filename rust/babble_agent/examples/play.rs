@@ -9,14 +9,14 @@ use babble_agent::{AgentError, Policy, REFERENCES, Random, predict, reference};
 use babble_env::{AnyTask, Autoreset, Config, EnvError, Executor, Outcome, make};
 use serde_json::Value;
 
-const EPISODES: usize = 20;
+pub(crate) const EPISODES: usize = 20;
 /// The environments, and how many babbles the Hebb agent learns from.
 const TASKS: [(&str, &str, usize); 2] = [
     ("reach", "BabbleReachPattern-v0", 1_000),
     ("grasp", "BabbleGrasp-v0", 50),
 ];
 
-fn main() -> Result<(), AgentError> {
+pub(crate) fn main() -> Result<(), AgentError> {
     let executor = &mut Executor::new(2)?;
     for (name, id, babbles) in TASKS {
         let task = make(
@@ -49,7 +49,7 @@ fn main() -> Result<(), AgentError> {
 }
 
 /// How many episodes of an agent succeed, one in each environment of a batch.
-fn play(
+pub(crate) fn play(
     task: &Arc<dyn AnyTask>,
     policy: &dyn Policy,
     executor: &mut Executor,

@@ -17,6 +17,7 @@ import json
 import shlex
 import sys
 from collections import defaultdict
+from io import BytesIO
 from pathlib import Path
 from statistics import mean
 from time import process_time
@@ -25,6 +26,7 @@ from typing import Any
 import matplotlib as mpl
 
 from gym_babble import evaluate, scenarios
+from gym_babble.files import check_folder, write_file
 from gym_babble.study.evaluation import wilson
 from gym_babble.study.ppo import train_ppo
 from gym_babble.study.presets import PRESETS
@@ -130,7 +132,9 @@ def picture(runs: list[Run], path: Path) -> None:
         axis.set(xlabel=label)
         axis.grid(alpha=0.3)
         axis.legend(loc="lower right")
-    figure.savefig(path, dpi=100)
+    buffer = BytesIO()
+    figure.savefig(buffer, format="png", dpi=100)
+    write_file(path, buffer.getvalue())
 
 
 def main() -> None:
@@ -152,8 +156,9 @@ def main() -> None:
         parser.error(f"--presets: there are {', '.join(known)}")
 
     pictures = arguments.pictures or arguments.out
-    for folder in (arguments.out, pictures):
-        folder.mkdir(parents=True, exist_ok=True)
+    for name, folder in (("--out", arguments.out), ("--pictures", pictures)):
+        check_folder(folder, name)
+        folder.mkdir(exist_ok=True)
     plan = [
         (preset, arguments.steps or PRESETS[preset].steps, seed)
         for preset in presets
@@ -163,10 +168,9 @@ def main() -> None:
     runs: list[Run] = []
     for preset, steps, seed in plan:
         runs.append(one_run(preset, steps, seed, arguments.cases))
-        file = arguments.out / f"ppo_{task.name}.json"
-        file.write_text(document(task, runs), encoding="utf-8")
-    picture(runs, pictures / f"ppo_{task.name}.png")
+        write_file(arguments.out / f"ppo_{task.name}.json", document(task, runs))
     print(table(task, runs))
+    picture(runs, pictures / f"ppo_{task.name}.png")
 
 
 if __name__ == "__main__":

@@ -17,12 +17,12 @@ from gym_babble.cli.arguments import (
     TaskName,
 )
 from gym_babble.cli.output import (
-    check_folder_of,
     name_files,
     print_json,
     print_results,
     say,
 )
+from gym_babble.files import check_folder
 from gym_babble.report import write_report
 from gym_babble.study.compare import compare as run_comparison
 from gym_babble.study.contenders import Settings
@@ -51,7 +51,7 @@ def compare(
 ) -> None:
     """Compare Hebb babbling with PPO, and with agents that need no learning."""
     if report is not None:
-        check_folder_of(report)
+        check_folder(report, "--report")
         check_format(report / "figure.svg")  # Fails now if the extra `figures` is missing.
     settings = Settings(
         task=task,
@@ -64,17 +64,15 @@ def compare(
     )
     keys = None if agents is None else [key.strip() for key in agents.split(",")]
     comparison = run_comparison(keys, settings, log=say)
-    written: list[Path] = []
-    if report is not None:
-        say("writing the report")
-        command = _command(settings, report, agents, other_report)
-        written = write_report(comparison, report, command, other_report)
     if as_json:
         print_json(comparison.to_json())
     else:
         print_results(comparison.table())
     say(f"{comparison.seconds:.0f} s")
-    name_files(written)
+    if report is not None:
+        say("writing the report")
+        command = _command(settings, report, agents, other_report)
+        name_files(write_report(comparison, report, command, other_report))
 
 
 def _command(settings: Settings, report: Path, agents: str | None, other_report: str | None) -> str:

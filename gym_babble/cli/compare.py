@@ -12,6 +12,7 @@ from gym_babble.cli.arguments import (
     Babbles,
     Cases,
     ConfigName,
+    FirstSeed,
     Movements,
     Seeds,
     TaskName,
@@ -42,6 +43,7 @@ def compare(
     ] = None,
     task: TaskName = "reach",
     agents: Agents = None,
+    seed: FirstSeed = 0,
     seeds: Seeds = 1,
     cases: Cases = 1_000,
     movements: Movements = 20_000,
@@ -56,6 +58,7 @@ def compare(
     settings = Settings(
         task=task,
         config=config,
+        seed=seed,
         seeds=seeds,
         cases=cases,
         movements=movements,
@@ -79,7 +82,8 @@ def _command(settings: Settings, report: Path, agents: str | None, other_report:
     """The command that creates the report again."""
     words = ["gym-babble", "compare", "--task", settings.task, "--report", str(report)]
     words += ["--agents", agents] if agents is not None else []
-    words += ["--seeds", str(settings.seeds), "--cases", str(settings.cases)]
+    words += ["--seed", str(settings.seed), "--seeds", str(settings.seeds)]
+    words += ["--cases", str(settings.cases)]
     trials = settings.movements if settings.task == "reach" else settings.babbles
     words += [f"--{TASKS[settings.task].trials}", str(trials), "--config", str(settings.config)]
     words += ["--other-report", other_report] if other_report is not None else []

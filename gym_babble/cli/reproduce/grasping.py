@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from gym_babble.cli.arguments import AsJson, Babbles, ConfigName, Picture, Seed, Seeds
+from gym_babble.cli.arguments import AsJson, Babbles, ConfigName, FirstSeed, Picture, Seed, Seeds
 from gym_babble.cli.learning import learn_grasping
 from gym_babble.cli.output import (
     check_picture,
@@ -28,6 +28,7 @@ __all__ = ["fig7", "fig8", "sight", "table2"]
 
 def table2(
     *,
+    seed: FirstSeed = 0,
     seeds: Seeds = 5,
     cases: Annotated[
         int, typer.Option(min=2, help="Random cases in each region, for each seed.")
@@ -45,6 +46,7 @@ def table2(
     """Table II: learned hands, and outcomes of reaching and grasping, beside the paper's."""
     check_folder(folder, "--out")
     table = rates.table2(
+        seed=seed,
         seeds=seeds,
         cases=cases,
         config=config,

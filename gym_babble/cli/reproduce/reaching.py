@@ -9,6 +9,7 @@ from gym_babble.cli.arguments import (
     AsJson,
     Cases,
     ConfigName,
+    FirstSeed,
     Movements,
     Picture,
     QuasiStatic,
@@ -39,6 +40,7 @@ __all__ = ["fig2", "fig4", "fig5", "table1"]
 
 def table1(
     *,
+    seed: FirstSeed = 0,
     seeds: Seeds = 5,
     cases: Cases = 1_000,
     config: ConfigName = "paper",
@@ -56,6 +58,7 @@ def table1(
     """Table I: outcomes of reaching, beside the paper's rates."""
     check_folder(folder, "--out")
     table = rates.table1(
+        seed=seed,
         seeds=seeds,
         cases=cases,
         config=config,

@@ -18,11 +18,14 @@ parser.add_argument(
     "--diameters", type=float, nargs="+", default=[1.5, 2, 2.4, 3, 4, 5, 6, 7, 8, 9, 10, 12]
 )
 parser.add_argument("--engine", default="tree", choices=["tree", "rapier"])
+parser.add_argument("--reflex", type=float, nargs=2, help="flexion of thumb, finger [deg]")
 parser.add_argument("--fingers", default="virtual", choices=["virtual", "independent"])
 parser.add_argument("--json", action="store_true", help="print one JSON document")
 arguments = parser.parse_args()
 
-config = {"body": {"engine": arguments.engine, "grip": {"fingers": arguments.fingers}}}
+grip = {"fingers": arguments.fingers}
+grip |= {"reflex_deg": arguments.reflex} if arguments.reflex else {}
+config = {"body": {"engine": arguments.engine, "grip": grip}}
 rows = []
 if not arguments.json:
     print("| diameter [cm] | held | 95 % | flexion thumb, finger [deg] | edges in the fovea |")

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from results.stores import Stores
 
 OUTCOMES = ("success", "collision", "joint_limit")
+PANELS = ("halfway", "switched")
 SIZES = {"small": "2.4 cm", "big": "6 cm"}
 
 
@@ -69,6 +70,22 @@ def table1(stores: Stores) -> str:
         rows.append([*about, *_table1_cells(found)])
     heads = ["agent", "body", "movements", "success", "seeds", "collision", "joint limit", "legal"]
     return markdown(heads, rows)
+
+
+def fig4(stores: Stores) -> str:
+    """How many movements of Fig. 4 reach the target, beside agents that learnt nothing."""
+    found = stores["fig4"]["paper"]
+    titles = {
+        "agent": "Hebb `paper`",
+        "straight": "straight movement, b1 = ½",
+        "random": "random b1",
+        "scripted": "curve to the shoulder",
+    }
+    rows = [
+        [title, *(f"{found['reached'][name][panel]} of {found['cases']}" for panel in PANELS)]
+        for name, title in titles.items()
+    ]
+    return markdown(["agent", "obstacle halfway", "switched"], rows)
 
 
 def sensitivity(stores: Stores) -> str:
@@ -225,11 +242,57 @@ def interference(stores: Stores) -> str:
     return markdown([*heads, "recalled in the hand"], rows)
 
 
+def ppo_reach(stores: Stores) -> str:
+    """PPO's presets in reaching."""
+    more = ("collision", "joint_limit", "timeout")
+    learnt = ("movements", "control_steps", "seconds", "processor_seconds")
+    rows = [
+        [
+            found["preset"],
+            f"{found['steps']:,}",
+            *_mean_and_range(found),
+            *(share(found[name]["mean"]) for name in more),
+            *(f"{found[name]:,.0f}" for name in learnt),
+        ]
+        for found in stores["ppo_reach"].values()
+    ]
+    heads = ["preset", "steps", "success", "seeds", *more, *learnt]
+    return markdown([head.replace("_", " ") for head in heads], rows)
+
+
+def _mean_and_range(found: dict[str, Any]) -> list[str]:
+    success = found["success"]
+    return [share(success["mean"]), f"{found['seeds']}: {span(success['min'], success['max'])}"]
+
+
+def grasping(stores: Stores) -> str:
+    """The agents of grasping on `palm_side` cases."""
+    (ppo,), hebb = stores["ppo_grasp"].values(), stores["grasp"]["hebb"]["agents"][0]["test"]
+    rows = [
+        _grasping_row(f"PPO `grasp`, {ppo['steps']:,} steps", _mean_and_range(ppo), ppo, "mean"),
+        _grasping_row("`HebbBabbling`, 1,000 babbles", _mean_and_range(hebb), hebb, "mean"),
+    ]
+    for title, run in (("`Scripted`", "grasp-scripted"), ("`Random`", "grasp-random")):
+        found = stores["references"][run]
+        success = found["success"]
+        cells = [share(success["rate"]), f"1: [{interval(success)}]"]
+        rows.append(_grasping_row(title, cells, found, "rate"))
+    heads = ["agent", "success", "seeds", *SIZES.values(), "lost", "timeout"]
+    return markdown([*heads, "any part touches", "palm touches"], rows)
+
+
+def _grasping_row(title: str, cells: list[str], found: dict[str, Any], key: str) -> list[str]:
+    of_size = [found["by_size"].get(size) for size in SIZES.values()]
+    split = [share(part["success"][key]) if part else "–" for part in of_size]
+    rest = [share(found[name][key]) for name in ("lost", "timeout", "reach", "palm_reach")]
+    return [title, *cells, *split, *rest]
+
+
 BLOCKS: dict[str, Callable[[Stores], str]] = {
     block.__name__: block
     for block in (
-        *(table1_short, table1, sensitivity, table2_short, table2, hands, holding),
-        *(sizes, engines, sides, interference),
+        *(table1_short, table1, fig4, sensitivity, table2_short, table2, hands, holding),
+        *(sizes, engines, sides, interference, ppo_reach, grasping),
     )
 }
 """The tables by name."""

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 from gym_babble.files.write import write_file
 from results.blocks import BLOCKS
-from results.sentences import FIXED, SENTENCES
+from results.sentences import SENTENCES, Sentences
 from results.stores import ROOT, Stores
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-BLOCK = re.compile(r"(<!-- results: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
+BLOCK = re.compile(r"(<!-- results: (\w+) -->\n).*?( *<!-- end -->)", re.DOTALL)
 FIELD = re.compile(r"\{([^:{}]+):([^{}]+)\}")
 NUMBER = r"([−-]?[\d.,]*\d)"
 APART = re.compile(
@@ -47,7 +47,7 @@ def filled(name: str, page: str, stores: Stores) -> str:
         PageError: A sentence is not in the page, or more than once.
     """
     page = BLOCK.sub(lambda found: found[1] + BLOCKS[found[2]](stores) + found[3], page)
-    for template in SENTENCES.get(name, ()):
+    for template in SENTENCES.get(name, Sentences()).measured:
         values = [shown(stores.find(path), form) for path, form in FIELD.findall(template)]
         found = place(name, page, template)
         # From the end, so that the earlier places stay where they are.
@@ -81,15 +81,15 @@ def place(name: str, page: str, template: str) -> re.Match[str]:
 def unstored(name: str, page: str) -> list[str]:
     """Rates in a page that come from no store and are not listed as fixed, with their context."""
     spaces: Callable[[re.Match[str]], str] = lambda found: " " * len(found[0])  # noqa: E731
-    page = APART.sub(spaces, page)
-    for template in SENTENCES.get(name, ()):
+    for template in SENTENCES.get(name, Sentences()).measured:
         start, end = place(name, page, template).span()
         page = page[:start] + " " * (end - start) + page[end:]
-    for phrase in FIXED.get(name, ()):
+    for phrase in SENTENCES.get(name, Sentences()).fixed:
         pattern = r"\s+".join(re.escape(word) for word in phrase.split())
         page, count = re.subn(pattern, spaces, page)
         if not count:
-            raise PageError(f"{name} has no {phrase!r}: take it from the list of fixed numbers")
+            raise PageError(f"{name} has no {phrase!r}: take it from results/sentences.md")
+    page = APART.sub(spaces, page)
     return [
         " ".join(page[max(0, found.start() - 40) : found.end() + 20].split())
         for found in RATE.finditer(page)

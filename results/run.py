@@ -23,10 +23,10 @@ def measured(command: str) -> dict[str, Any]:
     """What a command prints with `--json`, and how long it took."""
     command = f"{command} --json"
     program, *words = shlex.split(command)
-    if program == "python":
-        program, words = sys.executable, [str(ROOT / words[0]), *words[1:]]
-    else:
-        program = str(Path(sys.executable).with_name(program))
+    program = (
+        sys.executable if program == "python" else str(Path(sys.executable).with_name(program))
+    )
+    words = [str(ROOT / word) if (ROOT / word).is_file() else word for word in words]
     began = time.perf_counter()
     # Pictures and tables that it writes beside what it prints are not kept.
     with tempfile.TemporaryDirectory() as folder:

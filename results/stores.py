@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import json
+from collections import defaultdict
 from pathlib import Path
+from statistics import fmean
 from typing import Any
+
+from gym_babble.study.rates import counted, over_seeds, paper_tally
+from gym_babble.study.stored import Study
 
 ROOT = Path(__file__).resolve().parent.parent
 FOLDER = ROOT / "results"
 
 TABLE1 = "gym-babble reproduce table1 --seeds 5"
 REACHING = "--env-id BabbleReachPattern-v0"
+RAPIER = "python examples/grasp_sizes.py --engine rapier"
 STEPS = "--env-id BabbleReach-v0"
 GRASPING = "--env-id BabbleGrasp-v0"
 
@@ -23,6 +29,8 @@ STORES: dict[str, dict[str, str]] = {
         "conjunctive-250": f"{TABLE1} --variant conjunctive --movements 250",
         "conjunctive-icub": f"{TABLE1} --variant conjunctive --config icub",
         "conjunctive-icub-250": f"{TABLE1} --variant conjunctive --config icub --movements 250",
+        "paper-4000": f"{TABLE1} --movements 4000",
+        "conjunctive-4000": f"{TABLE1} --variant conjunctive --movements 4000",
         "conjunctive-steps": f"{TABLE1} --variant conjunctive --control delta_posture",
     },
     "references": {
@@ -39,12 +47,22 @@ STORES: dict[str, dict[str, str]] = {
     },
     "sensitivity": {"rows": "python examples/sensitivity.py"},
     "fig4": {"paper": "gym-babble reproduce fig4"},
-    "grasp": {"hebb": "gym-babble compare --task grasp --agents hebb-paper"},
-    "table2": {"paper": "gym-babble reproduce table2 --seeds 5"},
+    "grasp": {"hebb": "gym-babble compare --task grasp --agents hebb-paper --seeds 3"},
+    "table2": {
+        "paper": "gym-babble reproduce table2 --seeds 5",
+        "small": "gym-babble reproduce table2 --seeds 10 --cases 40 --babbles 200 --hold-trials 1",
+    },
     "sizes": {
         "tree": "python examples/grasp_sizes.py",
         "independent": "python examples/grasp_sizes.py --fingers independent",
-        "rapier": "python examples/grasp_sizes.py --engine rapier",
+        "rapier": RAPIER,
+        "open": "python examples/grasp_sizes.py --reflex 70 70 --diameters 2.4",
+        "open-rapier": f"{RAPIER} --reflex 70 70 --diameters 2.4",
+        "closed": "python examples/grasp_sizes.py --reflex 90 90 --diameters 2.4",
+        "closed-rapier": f"{RAPIER} --reflex 90 90 --diameters 2.4",
+    },
+    "table2_rapier": {
+        "rapier": "gym-babble reproduce table2 --seeds 2 --config results/rapier.toml"
     },
     "sides": {"scripted": "python examples/grasp_sides.py"},
     "interference": {"rows": "python examples/grasp_interference.py"},
@@ -57,10 +75,49 @@ STUDIES = {
 }
 """Stores that examples/ppo_study.py writes."""
 
+LEARNT_FROM = ("movements", "control_steps", "seconds", "processor_seconds")
+
 
 def path_of(name: str) -> Path:
     """The file of a store."""
     return STUDIES.get(name, FOLDER / f"{name}.json")
+
+
+def of_study(path: Path) -> dict[str, Any]:
+    """Means and ranges over the seeds of each preset and length, by names like `grasp-2500000`."""
+    groups = defaultdict(list)
+    for run in Study.read(path).runs:
+        groups[f"{run.preset}-{run.steps}"].append(run)
+    return {
+        name: {
+            "preset": runs[0].preset,
+            "steps": runs[0].steps,
+            **_over_runs([run.counts for run in runs]),
+            "by_size": {
+                size: _over_runs([run.by_size[size] for run in runs]) for size in runs[0].by_size
+            },
+            **{what: fmean(getattr(run, what) for run in runs) for what in LEARNT_FROM},
+        }
+        for name, runs in groups.items()
+    }
+
+
+def _over_runs(counts: list[dict[str, int]]) -> dict[str, Any]:
+    names = [name for name in counts[0] if name != "cases"]
+    return over_seeds([counted(one) for one in counts], names)
+
+
+def derived(stores: Stores) -> dict[str, float]:
+    """Numbers that several stored ones give."""
+    ours = stores["table1"]["paper"]["over_seeds"]["success"]["mean"]
+    changed = {row["change"]: row["success"] for row in stores["sensitivity"]["rows"]}
+    none = changed.pop("none")
+    del changed["camera frame fick"]
+    return {
+        "above_paper": ours - paper_tally()["success"]["rate"],
+        "of_a_row": 1.96 * (none * (1 - none) / 2_000) ** 0.5,
+        "of_other_changes": max(abs(success - none) for success in changed.values()),
+    }
 
 
 class Stores(dict[str, Any]):
@@ -68,19 +125,22 @@ class Stores(dict[str, Any]):
 
     def __missing__(self, name: str) -> Any:
         """Reads a store."""
-        stored = json.loads(path_of(name).read_text(encoding="utf-8"))
-        if name in STORES:
-            stored = {run: found["printed"] for run, found in stored["runs"].items()}
-        self[name] = stored
-        return stored
+        if name == "derived":
+            self[name] = derived(self)
+        elif name in STUDIES:
+            self[name] = of_study(STUDIES[name])
+        else:
+            stored = json.loads(path_of(name).read_text(encoding="utf-8"))
+            self[name] = {run: found["printed"] for run, found in stored["runs"].items()}
+        return self[name]
 
     def find(self, path: str) -> Any:
-        """The value at a path such as `table1.paper.by_seed.0.success.rate`.
+        """The value at a path such as `table1/paper/by_seed/0/success/rate`.
 
         A part of the form `name=value` selects the item of a list that has this value.
         """
         value: Any = self
-        for part in path.split("."):
+        for part in path.split("/"):
             key, equals, wanted = part.partition("=")
             if equals:
                 value = next(item for item in value if str(item[key]) == wanted)

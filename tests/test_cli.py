@@ -258,7 +258,7 @@ def test_compare_writes_a_report_of_one_file(run_json, tmp_path):
     assert document == json.loads((folder / "results.json").read_text(encoding="utf-8"))
     assert [row["agent"] for row in document["agents"]] == ["hebb-paper", "random"]
     for row in document["agents"]:
-        check_rates(row["test"], 50)
+        check_rates(row["test_by_seed"][0], 50)
     page = (folder / "index.html").read_text(encoding="utf-8")
     assert 'src="data:image/png;base64,' in page
     assert 'src="data:image/svg+xml;base64,' in page
@@ -277,7 +277,7 @@ def test_compare_writes_a_report_of_grasping(run_json, monkeypatch, tmp_path):
     )
     assert document == json.loads((folder / "results.json").read_text(encoding="utf-8"))
     assert [row["agent"] for row in document["agents"]] == ["hebb-paper", "ppo-stored"]
-    check_rates(document["agents"][0]["test"], 6, GRASP)
+    check_rates(document["agents"][0]["test_by_seed"][0], 6, GRASP)
     page = (folder / "index.html").read_text(encoding="utf-8")
     assert page.count('src="data:image/svg+xml;base64,') == 4  # Curves, Fig. 7 and 8, the sight.
     assert page.count('src="data:image/png;base64,') == 2
@@ -293,19 +293,23 @@ def test_reproduce_table1(run_json, run, tmp_path):
     words = ("reproduce", "table1", "--seeds", 2, "--cases", 50, "--movements", MOVEMENTS)
     document = run_json(*words, "--out", tmp_path)
     assert document == json.loads((tmp_path / "table1.json").read_text(encoding="utf-8"))
-    assert [row["seed"] for row in document["by_seed"]] == [0, 1]
-    check_rates(document["pooled"], 100)
-    mean = np.mean([row["success"]["rate"] for row in document["by_seed"]])
-    assert document["over_seeds"]["success"]["mean"] == pytest.approx(mean)
-    assert document["pooled"]["success"]["rate"] == pytest.approx(mean)
     with (tmp_path / "table1.csv").open(newline="") as file:
         lines = list(csv.DictReader(file))
+    assert [row["seed"] for row in document["by_seed"]] == [0, 1]
+    for row in document["by_seed"]:
+        check_rates(row, 50)
+    rates = [row["success"]["rate"] for row in document["by_seed"]]
+    found = document["over_seeds"]["success"]
+    assert found["mean"] == pytest.approx(np.mean(rates))
+    assert [found["min"], found["max"]] == sorted(rates)
+    second = run_json(*words[:2], "--seed", 1, "--seeds", 1, *words[4:], "--out", tmp_path)
+    assert second["by_seed"] == document["by_seed"][1:]
     assert [float(line["success"]) for line in lines] == [
         row["success"]["rate"] for row in document["by_seed"]
     ]
     code, printed, _ = run(*words, "--control", "delta_posture", "--out", tmp_path)
     assert code == 0
-    assert "pooled" in printed
+    assert "range of seeds" in printed
 
 
 @pytest.mark.parametrize("figure", ["fig2", "fig4", "fig5"])
@@ -324,9 +328,9 @@ def test_reproduce_table2(run_json, tmp_path):
     assert document == json.loads((tmp_path / "table2.json").read_text(encoding="utf-8"))
     with (tmp_path / "table2.csv").open(newline="") as file:
         lines = list(csv.DictReader(file))
-    grid = [size["tests"]["table2"]["pooled"] for size in document["sizes"]]
-    told = [int(line["tests"]) for line in lines if line["protocol"] == "table2"]
-    assert told == [found["tests"] for found in grid]
+    grid = [size["tests"]["table2"]["by_seed"][0] for size in document["sizes"]]
+    told = [int(line["cases"]) for line in lines if line["protocol"] == "table2"]
+    assert told == [found["cases"] for found in grid]
 
 
 @pytest.mark.parametrize("figure", ["fig7", "fig8", "sight"])

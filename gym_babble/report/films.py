@@ -10,7 +10,6 @@ import numpy as np
 from gym_babble.agents.loading import LoadedAgent
 from gym_babble.report.html import figure_html, png_source
 from gym_babble.study.comparison import TrainedResult
-from gym_babble.study.scenarios import scenarios
 from gym_babble.viz.film import contact_sheet, png, record
 
 if TYPE_CHECKING:
@@ -40,13 +39,10 @@ def _filmed(
         return None
     result = played[0]
     trained, config = result.trained[0], comparison.settings.config
-    cases = scenarios(comparison.task.protocol, comparison.settings.cases, config=config)
-    solved = [
-        case
-        for case, outcome in zip(cases, result.tests[0].outcomes, strict=True)
-        if outcome == "success"
-    ]
-    case = max(solved or cases, key=worth)
+    test = result.tests[0]
+    outcomes = zip(test.cases, test.outcomes, strict=True)
+    solved = [case for case, outcome in outcomes if outcome == "success"]
+    case: Any = max(solved or test.cases, key=worth)
     loaded = LoadedAgent(trained.agent, trained.env_id, config, trained.env_kwargs)
     film = record(loaded, options={"scenario": case}, size=600)
     eye = record(loaded, options={"scenario": case}, camera="eye", size=630).frames[0]

@@ -47,6 +47,7 @@ STORES: dict[str, dict[str, str]] = {
     },
     "sensitivity": {"rows": "python examples/sensitivity.py"},
     "fig4": {"paper": "gym-babble reproduce fig4"},
+    "fig5": {"paper": "gym-babble reproduce fig5"},
     "grasp": {"hebb": "gym-babble compare --task grasp --agents hebb-paper --seeds 3"},
     "table2": {
         "paper": "gym-babble reproduce table2 --seeds 5",

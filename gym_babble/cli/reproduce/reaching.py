@@ -116,13 +116,19 @@ def fig5(
     movements: Movements = 20_000,
     seed: Seed = 0,
     config: ConfigName = "paper",
+    as_json: AsJson = False,
 ) -> None:
     """Figure 5: the weights of two sets of input neurons."""
     check_picture(file)
     sets = weights.weight_sets(learn_reaching("paper", movements, seed, config))
-    print_results(
-        f"{sets.left.sum()} input neurons curve left, {sets.right.sum()} right; the mean of one "
-        f"set correlates {share(sets.mirror_correlation)} with the mirrored mean of the other"
-    )
+    left, right, correlation = sets.left.sum(), sets.right.sum(), sets.mirror_correlation
+    if as_json:
+        found = {"left": int(left), "right": int(right), "mirror_correlation": correlation}
+        print_json({"config": config, "movements": movements, "seed": seed, **found})
+    else:
+        print_results(
+            f"{left} input neurons curve left, {right} right; the mean of one set correlates "
+            f"{share(correlation)} with the mirrored mean of the other"
+        )
     save(weights.draw(sets), file)
     name_files([file])

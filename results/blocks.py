@@ -97,43 +97,44 @@ def sensitivity(stores: Stores) -> str:
     return markdown(["change", "success", "collision", "joint limit", "legal"], rows)
 
 
-def _tests(stores: Stores) -> list[tuple[str, str, dict[str, Any]]]:
-    """Protocol, size and results of Table II's tests."""
-    sizes = stores["table2"]["paper"]["sizes"]
-    names = {"table2": "Table II's grid", "palm_side": "region `palm_side`"}
-    return [
-        (names.get(protocol, f"region `{protocol}`"), f"{100 * size['diameter']:g} cm", tests)
-        for protocol in ("table2", "palm_side", "full")
-        for size in sizes
-        for tests in [size["tests"][protocol]]
-    ]
+TESTS = {"table2": "Table II's grid", "palm_side": "region `palm_side`", "full": "region `full`"}
 
 
 def table2_short(stores: Stores) -> str:
     """The README's rows of Table II: both sizes in a cell."""
     paper = [" / ".join(share(PAPER_TABLE_II[s][f]) for s in SIZES) for f in ("reach", "held")]
     rows = [["paper, small / big, 144 tests each", *paper]]
-    tests = _tests(stores)
-    for (title, _, small), (_, _, big) in zip(tests[::2], tests[1::2], strict=True):
-        cells = [
-            " / ".join(share(size["over_seeds"][fact]["mean"]) for size in (small, big))
-            for fact in ("reach", "held")
-        ]
+    sizes = stores["table2"]["paper"]["sizes"]
+    for protocol, title in TESTS.items():
+        means = [size["tests"][protocol]["over_seeds"] for size in sizes]
+        cells = [" / ".join(share(mean[f]["mean"]) for mean in means) for f in ("reach", "held")]
         rows.append([f"ours, 2.4 / 6 cm, {title}", *cells])
     return markdown(["", "any part touches", "grasped"], rows)
 
 
 def table2(stores: Stores) -> str:
     """Reaching and grasping in the tests of Table II and in the regions."""
-    rows = [
+    paper = [
         ["paper", size, "144", share(known["reach"]), "", share(known["held"])]
         for size, known in PAPER_TABLE_II.items()
     ]
-    for title, size, tests in _tests(stores):
-        number = sum(seed["cases"] for seed in tests["by_seed"])
-        rates = [tests["over_seeds"][fact] for fact in ("reach", "palm_reach", "held")]
-        cells = [f"{share(rate['mean'])} ({span(rate['min'], rate['max'])})" for rate in rates]
-        rows.append([title, size, f"{number:,}", *cells])
+    return _table2(paper, stores["table2"]["paper"])
+
+
+def table2_rapier(stores: Stores) -> str:
+    """The same by the other engine."""
+    return _table2([], stores["table2_rapier"]["rapier"])
+
+
+def _table2(rows: list[list[str]], found: dict[str, Any]) -> str:
+    rows = list(rows)
+    for protocol, title in TESTS.items():
+        for size in found["sizes"]:
+            tests = size["tests"][protocol]
+            number = sum(seed["cases"] for seed in tests["by_seed"])
+            rates = [tests["over_seeds"][fact] for fact in ("reach", "palm_reach", "held")]
+            cells = [f"{share(rate['mean'])} ({span(rate['min'], rate['max'])})" for rate in rates]
+            rows.append([title, f"{100 * size['diameter']:g} cm", f"{number:,}", *cells])
     heads = ["tests", "size", "number", "any part touches", "palm touches", "grasped"]
     return markdown(heads, rows)
 
@@ -292,6 +293,7 @@ BLOCKS: dict[str, Callable[[Stores], str]] = {
     block.__name__: block
     for block in (
         *(table1_short, table1, fig4, sensitivity, table2_short, table2, hands, holding),
+        table2_rapier,
         *(sizes, engines, sides, interference, ppo_reach, grasping),
     )
 }

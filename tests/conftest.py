@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from gym_babble.paper.table2 import TableTwo, table2
+
 ROOT = Path(__file__).resolve().parent.parent
 # For `bench`, which is not installed; behind everything, so that an installed package stays first.
 sys.path.append(str(ROOT))
@@ -18,10 +20,8 @@ settings.load_profile("fixed")
 
 
 @pytest.fixture(scope="session")
-def table_two():
+def table_two() -> TableTwo:
     """A small Table II of two seeds; results/stores.py has the same with more."""
-    from gym_babble.paper.table2 import table2
-
     return table2(seeds=2, cases=40, babbles=200, hold_trials=3)
 
 

@@ -48,25 +48,6 @@ STORES: dict[str, dict[str, str]] = {
     "sensitivity": {"rows": "python examples/sensitivity.py"},
     "fig4": {"paper": "gym-babble reproduce fig4"},
     "fig5": {"paper": "gym-babble reproduce fig5"},
-    "grasp": {"hebb": "gym-babble compare --task grasp --agents hebb-paper --seeds 3"},
-    "table2": {
-        "paper": "gym-babble reproduce table2 --seeds 5",
-        "small": "gym-babble reproduce table2 --seeds 10 --cases 40 --babbles 200 --hold-trials 1",
-    },
-    "sizes": {
-        "tree": "python examples/grasp_sizes.py",
-        "independent": "python examples/grasp_sizes.py --fingers independent",
-        "rapier": RAPIER,
-        "open": "python examples/grasp_sizes.py --reflex 70 70 --diameters 2.4",
-        "open-rapier": f"{RAPIER} --reflex 70 70 --diameters 2.4",
-        "closed": "python examples/grasp_sizes.py --reflex 90 90 --diameters 2.4",
-        "closed-rapier": f"{RAPIER} --reflex 90 90 --diameters 2.4",
-    },
-    "table2_rapier": {
-        "rapier": "gym-babble reproduce table2 --seeds 2 --config results/rapier.toml"
-    },
-    "sides": {"scripted": "python examples/grasp_sides.py"},
-    "interference": {"rows": "python examples/grasp_interference.py"},
 }
 """For each store its runs, each with its command; `--json` is added."""
 

@@ -15,6 +15,7 @@ from gym_babble.brain import is_own, rule_numbers, teach
 from gym_babble.envs.interface import Interface, check_seed, check_whole
 from gym_babble.envs.registry import task_entry
 from gym_babble.errors import AgentFileError, ConfigError
+from gym_babble.files import write_file
 from gym_babble.progress import track
 
 if TYPE_CHECKING:
@@ -170,9 +171,13 @@ class HebbBabbling(Planner):
     def save(self, path: str | Path) -> None:
         """Writes the agent: weights as safetensors, all else as JSON in its metadata.
 
-        A rule of your own is not written: pass it to `load`.
+        A rule of your own is not written: pass it to `load`. An earlier file is replaced once the
+        new one is complete.
+
+        Raises:
+            OSError: The file cannot be written; an earlier one is whole.
         """
-        Path(path).write_bytes(self._core.save(self._interface.task.config()))
+        write_file(path, self._core.save(self._interface.task.config()))
 
     @classmethod
     def load(

@@ -44,7 +44,7 @@ for rule in (hebb, "oja", covariance):
     name = rule if isinstance(rule, str) else rule.__name__
     agent = HebbBabbling("BabbleReachPattern-v0", arguments.variant, rule=rule, seed=0)
     agent.learn(arguments.movements, progress_bar=True)
-    result = evaluate(agent, "BabbleReachPattern-v0", cases)
+    result = evaluate(agent, cases=cases)
     rates[name] = result.rate("success")
     if not arguments.json:
         low, high = result.interval("success")

@@ -52,7 +52,7 @@ for name, changes, brain, movements in CHANGES:
         agent = HebbBabbling(env, seed=seed, brain=brain)
         agent.learn(arguments.movements or movements)
         cases = scenarios("table1", arguments.cases, seed, split="validation", config=config)
-        tests.append(evaluate(agent, cases=cases, config=config))
+        tests.append(evaluate(agent, cases=cases))
         legal.append(agent.learnt_rate)
     rates = {outcome: fmean(test.rate(outcome) for test in tests) for outcome in OUTCOMES}
     rates["legal_rate"] = fmean(legal)

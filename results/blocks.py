@@ -290,6 +290,6 @@ def _grasping_row(title: str, cells: list[str], found: dict[str, Any], key: str)
 
 
 BLOCKS: dict[str, Callable[[Stores], str]] = {
-    block.__name__: block for block in (table1_short, table1, fig4, sensitivity, ppo_reach)
+    block.__name__: block for block in (table1_short, table1, fig4, ppo_reach)
 }
 """The tables by name."""

@@ -45,7 +45,6 @@ STORES: dict[str, dict[str, str]] = {
         "curves": "python examples/curves.py",
         "rules": "python examples/own_rule.py --movements 2000",
     },
-    "sensitivity": {"rows": "python examples/sensitivity.py"},
     "fig4": {"paper": "gym-babble reproduce fig4"},
     "fig5": {"paper": "gym-babble reproduce fig5"},
 }
@@ -92,13 +91,8 @@ def _over_runs(counts: list[dict[str, int]]) -> dict[str, Any]:
 def derived(stores: Stores) -> dict[str, float]:
     """Numbers that several stored ones give."""
     ours = stores["table1"]["paper"]["over_seeds"]["success"]["mean"]
-    changed = {row["change"]: row["success"] for row in stores["sensitivity"]["rows"]}
-    none = changed.pop("none")
-    del changed["camera frame fick"]
     return {
         "above_paper": ours - paper_tally()["success"]["rate"],
-        "of_a_row": 1.96 * (none * (1 - none) / 2_000) ** 0.5,
-        "of_other_changes": max(abs(success - none) for success in changed.values()),
     }
 
 

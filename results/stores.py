@@ -16,7 +16,7 @@ FOLDER = ROOT / "results"
 
 TABLE1 = "gym-babble reproduce table1 --seeds 5"
 REACHING = "--env-id BabbleReachPattern-v0"
-RAPIER = "python examples/grasp_sizes.py --engine rapier"
+HOLD = "python examples/grasp_sizes.py"
 STEPS = "--env-id BabbleReach-v0"
 GRASPING = "--env-id BabbleGrasp-v0"
 
@@ -45,8 +45,25 @@ STORES: dict[str, dict[str, str]] = {
         "curves": "python examples/curves.py",
         "rules": "python examples/own_rule.py --movements 2000",
     },
+    "sensitivity": {"rows": "python examples/sensitivity.py"},
     "fig4": {"paper": "gym-babble reproduce fig4"},
     "fig5": {"paper": "gym-babble reproduce fig5"},
+    "grasp": {"hebb": "gym-babble compare --task grasp --agents hebb-paper --seeds 3"},
+    "table2": {"paper": "gym-babble reproduce table2 --seeds 5 --cases 300"},
+    "table2_small": {
+        "paper": "gym-babble reproduce table2 --seeds 6 --cases 40 --babbles 200 --hold-trials 1"
+    },
+    "sizes": {
+        "tree": HOLD,
+        "independent": f"{HOLD} --fingers independent --diameters 2.4 6 8",
+        "rapier": f"{HOLD} --engine rapier --diameters 2.4 6 8",
+        "open": f"{HOLD} --reflex 70 70 --diameters 2.4",
+        "open-rapier": f"{HOLD} --reflex 70 70 --engine rapier --diameters 2.4",
+        "closed": f"{HOLD} --reflex 90 90 --diameters 2.4",
+        "closed-rapier": f"{HOLD} --reflex 90 90 --engine rapier --diameters 2.4",
+    },
+    "sides": {"scripted": "python examples/grasp_sides.py"},
+    "interference": {"rows": "python examples/grasp_interference.py --seeds 2"},
 }
 """For each store its runs, each with its command; `--json` is added."""
 
@@ -91,8 +108,13 @@ def _over_runs(counts: list[dict[str, int]]) -> dict[str, Any]:
 def derived(stores: Stores) -> dict[str, float]:
     """Numbers that several stored ones give."""
     ours = stores["table1"]["paper"]["over_seeds"]["success"]["mean"]
+    changed = {row["change"]: row["success"] for row in stores["sensitivity"]["rows"]}
+    none = changed.pop("none")
+    del changed["camera frame fick"]
     return {
         "above_paper": ours - paper_tally()["success"]["rate"],
+        "of_a_row": 1.96 * (none * (1 - none) / 2_000) ** 0.5,
+        "of_other_changes": max(abs(success - none) for success in changed.values()),
     }
 
 

@@ -40,6 +40,6 @@ cases = scenarios("table1", arguments.cases)
 for rule in (hebb, covariance):
     agent = HebbBabbling("BabbleReachPattern-v0", arguments.variant, rule=rule, seed=0)
     agent.learn(arguments.movements, progress_bar=True)
-    result = evaluate(agent, "BabbleReachPattern-v0", cases)
+    result = evaluate(agent, cases=cases)
     low, high = result.interval("success")
     print(f"{rule.__name__}: success {result.rate('success'):.3f} [{low:.3f}, {high:.3f}]")

@@ -46,7 +46,7 @@ for name, changes, brain, movements in CHANGES:
         agent = HebbBabbling(env, seed=seed, brain=brain)
         agent.learn(arguments.movements or movements)
         cases = scenarios("table1", arguments.cases, seed, split="validation", config=config)
-        tests.append(evaluate(agent, cases=cases, config=config))
+        tests.append(evaluate(agent, cases=cases))
         legal.append(agent.learnt_rate)
     outcomes = ("success", "collision", "joint_limit")
     rates = [fmean(test.rate(outcome) for test in tests) for outcome in outcomes]

@@ -68,7 +68,7 @@ def test_trajectories_lead_from_start_to_target(found):
 
 
 def test_trajectories_curve_as_b1_says():
-    one = trajectories(Scripted(), scenarios("fig4", 1))[0]
+    one = trajectories(Scripted(), scenarios("fig4")[:1])[0]
     start, target = np.array(one.case["start"]), np.array(one.case["target"])
     middle = one.fingertip[len(one.fingertip) // 3]
     turn = np.cross([*(target - start), 0], [*(middle - start), 0])[2]
@@ -76,7 +76,7 @@ def test_trajectories_curve_as_b1_says():
 
 
 def test_switched_exchanges_start_and_obstacle():
-    case = scenarios("fig4", 1)[0]
+    case = scenarios("fig4")[0]
     other = switched(case)
     assert other["start"] == case["obstacle"][:2]
     assert other["obstacle"] == (*case["start"], case["obstacle"][2])

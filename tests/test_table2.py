@@ -12,7 +12,7 @@ from gym_babble import HebbBabbling, scenarios
 from gym_babble.paper import fig7, fig8, holding, sight
 from gym_babble.paper import table2 as grasping
 from gym_babble.paper.tables import table2_tables
-from gym_babble.study.evaluation import wilson
+from gym_babble.study.outcomes import wilson
 
 
 @pytest.fixture(scope="module")

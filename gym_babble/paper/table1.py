@@ -16,7 +16,7 @@ from gym_babble.study.scenarios import scenarios
 
 if TYPE_CHECKING:
     from gym_babble.config import ConfigLike
-    from gym_babble.study.evaluation import Evaluation
+    from gym_babble.study.outcomes import Evaluation
 
 __all__ = ["CONTROLS", "TableOne", "table1"]
 
@@ -104,7 +104,7 @@ def table1(
         agent.learn(movements, progress_bar=progress_bar)
         drawn = scenarios("table1", cases, one, config=config)
         bar = progress_bar and control != "pattern"  # Pattern tests take a moment.
-        tests.append(evaluate(agent, env_id, drawn, config=config, progress_bar=bar))
+        tests.append(evaluate(agent, cases=drawn, progress_bar=bar))
         legal_rates.append(agent.learnt_rate)
     settings = {
         "config": str(config),

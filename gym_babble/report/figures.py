@@ -102,7 +102,7 @@ def hands_section(comparison: Comparison) -> str:
     return (
         "<h2>Trajectories of the hand (Fig. 7)</h2>\n"
         + figure_html(
-            svg_source(fig7.draw(fig7.trajectories(agent, cases, config))),
+            svg_source(fig7.draw(fig7.trajectories(agent, cases))),
             "Final portions of the palm's trajectories to 12 places of each object, all around the "
             "arm, in a quarter of the figure's tests. Thin: touched; bold: grasped; dotted grey: "
             "missed. Circles are the objects, to scale.",

@@ -221,6 +221,11 @@ def test_a_zip_of_ours_that_has_learnt_on_is_as_any_other(zips):
     model.env = None  # As after saving and loading.
     with pytest.raises(ConfigError, match="does not say where it learnt"):
         evaluate(model)
+    for broken in (None, 3, {}, {**model.gym_babble_env, "config": "paper"}):
+        model.gym_babble_env = broken
+        model._n_updates = 5
+        with pytest.raises(ConfigError, match="does not say where it learnt"):
+            evaluate(model)
 
 
 def named_agent_of(model):
@@ -316,6 +321,8 @@ def test_a_zip_of_a_normalized_model_needs_their_file(normalized, tmp_path):
     np.testing.assert_array_equal(
         loaded.agent.predict(observation, deterministic=True)[0], expected
     )
+    with pytest.raises(FileNotFoundError, match="missing"):
+        named_agent(str(path), vec_normalize=tmp_path / "missing.pkl", **asked)
     other = tmp_path / "other.pkl"
     other.write_bytes(b"no statistics")
     with pytest.raises(AgentFileError, match=r"other\.pkl"):

@@ -344,6 +344,7 @@ def test_reproduce_table1(run_json, run, tmp_path):
     code, printed, _ = run(*words, "--control", "delta_posture", "--out", tmp_path)
     assert code == 0
     assert "range of seeds" in printed
+    assert "success +" in printed or "success -" in printed  # z.
 
 
 @pytest.mark.parametrize("figure", ["fig2", "fig4", "fig5"])
@@ -353,6 +354,16 @@ def test_reproduce_figures(run, tmp_path, figure):
     code, _, _ = run("reproduce", figure, "--out", path, *learning)
     assert code == 0
     assert path.read_bytes().startswith(b"\x89PNG")
+
+
+def test_figures_print_their_counts(run_json, tmp_path):
+    words = ("--movements", 1000, "--out", tmp_path / "figure.png")
+    counts = run_json("reproduce", "fig4", *words)
+    assert counts["cases"] == 144
+    assert set(counts["reached"]) == {"agent", "straight", "random", "scripted"}
+    sets = run_json("reproduce", "fig5", *words)
+    assert min(sets["left"], sets["right"]) > 0
+    assert 0 < sets["mirror_correlation"] <= 1
 
 
 def test_reproduce_table2(run_json, tmp_path):

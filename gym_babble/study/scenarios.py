@@ -126,10 +126,10 @@ def scenarios(
 
     Args:
         protocol: "table1": `n` legal movements (default 1,000), sampled with the full simulation,
-            as the paper's tests; "fig4": 36 starts around each of 4 targets, without impossible
-            ones; "table2": 12 positions of the object times 12 starts for each diameter, without
-            those in which the arm starts inside the object; "fig7": the same with 12 times 11;
-            "palm_side" and "full": `n` random cases of a region (default 1,000).
+            as the paper's tests; "fig4": 36 starts around each of 4 targets; "table2": 12 positions
+            of the object times 12 starts for each diameter, without those in which the arm starts
+            inside the object; "fig7": the same with 12 times 11; "palm_side" and "full": `n` random
+            cases of a region (default 1,000).
         n: Number of cases of a random protocol.
         seed: Seed of a random protocol; 0 if not given.
         split: Of a random protocol "test" (if not given), or "validation" for choosing settings;

@@ -34,12 +34,28 @@ impl ReachCase {
     /// None where a point is out of reach, or where the arm would touch the obstacle at either end.
     #[must_use]
     pub fn between(task: &ReachTask, hand: Vector2<f64>, target: Vector2<f64>) -> Option<Self> {
+        Self::around(task, hand, target, (hand + target) / 2.0)
+    }
+
+    /// The case with obstacle and start exchanged, as on the right of Fig. 4.
+    ///
+    /// None without an obstacle, where the new start is out of reach, or where the arm would touch
+    /// the obstacle at either end.
+    #[must_use]
+    pub fn switched(&self, task: &ReachTask) -> Option<Self> {
+        let start = self.obstacle?.centre;
+        Self::around(task, start, self.target.into(), self.hand.into())
+    }
+
+    fn around(
+        task: &ReachTask,
+        hand: Vector2<f64>,
+        target: Vector2<f64>,
+        centre: Vector2<f64>,
+    ) -> Option<Self> {
         let posture = |point| task.arm.posture_at(point).filter(|&q| task.arm.in_range(q));
         let (start, end) = (posture(hand)?, posture(target)?);
-        let obstacle = Obstacle {
-            centre: (hand + target) / 2.0,
-            radius: task.config.body.obstacle.radius_m,
-        };
+        let obstacle = obstacle_at(task, centre.into());
         let clear = |q| obstacle.clearance(&task.arm, q) > 0.0;
         (clear(start) && clear(end)).then_some(Self {
             start,

@@ -46,7 +46,9 @@ def film(agent: HebbBabbling, cases: list[Any]) -> Film:
         if one.outcome == "success":
             print(f"case {case['index']} of {case['protocol']}")
             return one
-    raise SystemExit(f"none of {len(cases)} cases was a success: learn more")
+    raise SystemExit(
+        f"none of {len(cases)} cases of {cases[0]['protocol']} was a success: learn more"
+    )
 
 
 def side_by_side(films: list[Film]) -> list[Image.Image]:

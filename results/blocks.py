@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from results.stores import Stores
 
 OUTCOMES = ("success", "collision", "joint_limit")
+DISTANCES = (0, 1, 2, 4, 7, 15)
 PANELS = ("halfway", "switched")
 SIZES = {"small": "2.4 cm", "big": "6 cm"}
 
@@ -98,6 +99,38 @@ def sensitivity(stores: Stores) -> str:
 
 
 TESTS = {"table2": "Table II's grid", "palm_side": "region `palm_side`", "full": "region `full`"}
+
+
+def vote(stores: Stores) -> str:
+    """What can be had from the obstacle's direction alone."""
+    titles = {
+        "constant": ("the best constant", "nothing"),
+        "hebb": ("Hebb `paper`", "obstacle"),
+        "vote_obstacle": ("vote", "obstacle"),
+        "vote_obstacle_eye": ("vote", "obstacle and eye"),
+        "any": ("any b1 that succeeds", ""),
+    }
+    rows = []
+    for name, title in titles.items():
+        found = stores["vote"]["rows"][name]
+        rows.append([*title, share(found["success"]), ", ".join(map(share, found["by_seed"]))])
+    return markdown(["choice of b1", "sees", "success", "by seed"], rows)
+
+
+def periods(stores: Stores) -> str:
+    """What the time between two applications of the rule decides."""
+    rows = [
+        [
+            f"{row['period_s']:g} s" if row["period_s"] else "once",
+            *(share(rate) for rate in row["reach"]),
+            *(", ".join(f"{ep:.1f}" for ep in hand) for hand in row["hands"]),
+            *(f"{row['weights_by_distance'][d]:.3f}".replace("-", "−") for d in DISTANCES),
+        ]
+        for row in stores["periods"]["rows"]
+    ]
+    weights = [f"weight at {DISTANCES[0]}", *map(str, DISTANCES[1:])]
+    heads = ["period", "reach, 2.4 cm", "6 cm", "EPs, 2.4 cm [°]", "6 cm [°]", *weights]
+    return markdown(heads, rows)
 
 
 def table2_short(stores: Stores) -> str:
@@ -281,8 +314,8 @@ def _grasping_row(title: str, cells: list[str], found: dict[str, Any], key: str)
 BLOCKS: dict[str, Callable[[Stores], str]] = {
     block.__name__: block
     for block in (
-        *(table1_short, table1, fig4, sensitivity, table2_short, table2, hands, holding),
-        *(sizes, engines, sides, interference, ppo_reach, grasping),
+        *(table1_short, table1, fig4, sensitivity, vote, table2_short, table2, hands, holding),
+        *(sizes, engines, sides, interference, periods, ppo_reach, grasping),
     )
 }
 """The tables by name."""

@@ -46,6 +46,7 @@ STORES: dict[str, dict[str, str]] = {
         "rules": "python examples/own_rule.py --movements 2000",
     },
     "sensitivity": {"rows": "python examples/sensitivity.py"},
+    "vote": {"rows": "python examples/obstacle_alone.py"},
     "fig4": {"paper": "gym-babble reproduce fig4"},
     "fig5": {"paper": "gym-babble reproduce fig5"},
     "grasp": {"hebb": "gym-babble compare --task grasp --agents hebb-paper --seeds 3"},
@@ -62,6 +63,7 @@ STORES: dict[str, dict[str, str]] = {
         "closed": f"{HOLD} --reflex 90 90 --diameters 2.4",
         "closed-rapier": f"{HOLD} --reflex 90 90 --engine rapier --diameters 2.4",
     },
+    "periods": {"rows": "python examples/grasp_learning_period.py"},
     "sides": {"scripted": "python examples/grasp_sides.py"},
     "interference": {"rows": "python examples/grasp_interference.py --seeds 2"},
 }

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from comparing import CONTROLS_OF, GRASP_IDS, REGIONS, assert_same, drawn_actions, rollout
 from grasping import OPEN, at, grasp, posture, to_object
-from gymnasium.wrappers import TimeLimit
 
 from gym_babble import _core
 from gym_babble.config import Config
@@ -223,55 +222,6 @@ def test_touching_an_obstacle_terminates(control):
     assert info["reward_terms"]["failure"] == -1
     assert reward < 0
     assert not info["reach"]
-
-
-@pytest.mark.parametrize("region", REGIONS)
-def test_the_time_limit_is_the_regions_however_it_is_made(region):
-    # The registry's limit would cut region "full" short, so the core has its own.
-    limit = {"palm_side": 240, "full": 500}[region]
-    made = gymnasium.make(GRASP_IDS[0], region=region)
-    envs = gymnasium.make_vec(GRASP_IDS[0], num_envs=2, region=region)
-    envs.reset(seed=1, options=CASE)
-    for env in (made, BabbleGraspEnv(region=region)):
-        env.reset(seed=1, options=CASE)
-        for k in range(1, limit + 1):
-            observation, _, terminated, truncated, info = env.step(SPREAD)
-            assert not terminated
-            assert truncated == (k == limit)
-            assert info["outcome"] == ("timeout" if truncated else "running")
-            assert observation["time"] == np.float32(k / limit)
-    for k in range(1, limit + 1):
-        observation, _, _, truncated, infos = envs.step(np.stack([SPREAD] * 2))
-        assert truncated.tolist() == [k == limit] * 2
-    assert list(infos["outcome"]) == ["timeout"] * 2
-    assert (observation["time"] == 1).all()
-
-
-@pytest.mark.parametrize("region", REGIONS)
-def test_max_episode_steps_of_make_is_a_wrappers_and_of_the_environment_its_own(region):
-    limit = {"palm_side": 240, "full": 500}[region]
-    env = gymnasium.make(GRASP_IDS[0], max_episode_steps=10, region=region)
-    assert isinstance(env, TimeLimit)
-    env.reset(seed=1)
-    for _ in range(10):
-        observation, _, terminated, truncated, info = env.step(STAY)
-    assert (terminated, truncated, info["outcome"]) == (False, True, "running")
-    assert observation["time"] == np.float32(10 / limit)
-    for own in (
-        BabbleGraspEnv(max_episode_steps=10, region=region),
-        gymnasium.make_vec(GRASP_IDS[0], num_envs=1, max_episode_steps=10, region=region),
-        BabbleGraspVectorEnv(1, max_episode_steps=10, region=region),
-    ):
-        own.reset(seed=1)
-        for k in range(1, 11):
-            observation, _, _, truncated, info = own.step(np.zeros(own.action_space.shape))
-            assert np.all(truncated) == (k == 10)
-        assert np.all(info["outcome"] == np.array("timeout", object))
-        assert np.all(observation["time"] == 1)
-    # More than the region's own too.
-    assert (
-        BabbleGraspEnv(max_episode_steps=900, region=region).interface.spec.max_episode_steps == 900
-    )
 
 
 def test_the_enclosure_reflex_closes_the_hand_whatever_the_action():

@@ -6,9 +6,6 @@ import gymnasium
 import numpy as np
 import pytest
 from comparing import CONTROLS, assert_same, drawn_actions
-from gymnasium.wrappers import (
-    TimeLimit,
-)
 
 from gym_babble import Scripted
 from gym_babble.envs import BabbleReachEnv
@@ -166,24 +163,6 @@ def test_a_collision_in_the_goal_form_holds_the_arm_until_the_time_limit():
     assert info["outcome"] == "collision"
     assert len(places) > 100
     assert all((place == places[0]).all() for place in places)
-
-
-def test_max_episode_steps_of_make_is_a_wrappers_and_of_the_environment_its_own():
-    env = gymnasium.make("BabbleReach-v0", max_episode_steps=10)
-    assert isinstance(env, TimeLimit)
-    env.reset(seed=1)
-    for _ in range(10):
-        observation, _, terminated, truncated, info = env.step(HOLD)
-    assert (terminated, truncated) == (False, True)
-    assert info["outcome"] == "running"
-    assert observation["time"] == np.float32(10 / 240)
-    env = BabbleReachEnv(max_episode_steps=10)
-    env.reset(seed=1)
-    for k in range(1, 11):
-        observation, _, _, truncated, info = env.step(HOLD)
-        assert truncated == (k == 10)
-    assert info["outcome"] == "timeout"
-    assert observation["time"] == 1
 
 
 # Goals.

@@ -81,7 +81,7 @@ def dummy(env_id, n, **kwargs):
         ("BabbleReachGoal-v0", {"max_episode_steps": 60}, 200),
         ("BabbleReachPattern-v0", {}, 20),
         ("BabbleGrasp-v0", {"max_episode_steps": 60}, 150),
-        ("BabbleGrasp-v0", {"obs": "flat", "control": "torque", "region": "full"}, 501),
+        ("BabbleGraspFull-v0", {"obs": "flat", "control": "torque"}, 501),
         ("BabbleGrasp-v0", {"obs": "retina", "retina_size": 36, "max_episode_steps": 5}, 20),
         ("BabbleGraspGoal-v0", {"max_episode_steps": 60}, 130),
     ],

@@ -96,11 +96,8 @@ class BabbleGraspEnv(BabbleEnv):
 
     ## Arguments
 
-    The options are listed below; each is a keyword of `gymnasium.make` too, but for
-    `max_episode_steps`: `gymnasium.make(id, max_episode_steps=n)` keeps it for its TimeLimit
-    wrapper, which truncates after n steps with the outcome still `running`.
-    `gymnasium.make_vec(id, max_episode_steps=n)` and `BabbleGraspEnv(max_episode_steps=n)` set the
-    time limit itself.
+    The options are listed below; each is a keyword of `gymnasium.make` and `make_vec` too, but for
+    `region`: region `full` has an id of its own, `BabbleGraspFull-v0`.
 
     `reset(options=...)` takes `scenario` (see `gym_babble.scenarios`), or any of `start` (shoulder,
     elbow) [rad], `object` (x, y), `diameter`, with `obs="goal"` `goal` (x, y), and `obstacle`

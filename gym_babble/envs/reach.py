@@ -80,12 +80,9 @@ class BabbleReachEnv(BabbleEnv):
 
     ## Arguments
 
-    The options are listed below; each is a keyword of `gymnasium.make` too, but for
-    `max_episode_steps`: `gymnasium.make(id, max_episode_steps=n)` keeps it for its TimeLimit
-    wrapper, which truncates after n < 240 steps with the outcome still `running`.
-    `gymnasium.make_vec(id, max_episode_steps=n)` and `BabbleReachEnv(max_episode_steps=n)` set the
-    time limit itself: outcome `timeout`, and the sense `time` is a share of n. It has no effect in
-    `pattern` control.
+    The options are listed below; each is a keyword of `gymnasium.make` and `make_vec` too.
+    `max_episode_steps` has no effect in `pattern` control. `BabbleReachPattern-v0` takes no other
+    `control`, because its time limit is one step.
 
     `reset(options=...)` takes `scenario` (see `gym_babble.scenarios`), or any of `start` (x, y),
     `target` (x, y) and `obstacle` (x, y), (x, y, radius) or None [m]; unspecified

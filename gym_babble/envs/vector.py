@@ -13,6 +13,7 @@ from gymnasium.vector.utils import batch_space
 
 from gym_babble import _core
 from gym_babble.envs.interface import RENDER_MODES, Interface, check_whole, document
+from gym_babble.envs.making import Made
 from gym_babble.envs.member import BatchMember
 from gym_babble.envs.registry import task_entry
 from gym_babble.envs.spaces import as_actions
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["BabbleVectorEnv"]
 
 
-class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
+class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
     """A batch of environments of any task. Each task has a class with its arguments.
 
     Environment i of a batch that is reset with seed s is bit for bit the single environment reset

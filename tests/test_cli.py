@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 import subprocess
 import sys
 
@@ -265,6 +266,27 @@ def test_compare_writes_a_report_of_one_file(run_json, tmp_path):
     assert "http://" not in page
     assert "https://" not in page
     assert str(tmp_path.parent.parent) not in page.replace(str(folder), "")
+    check_choice(page, document, 50)
+
+
+def check_choice(page, document, tests):
+    """A film is one of the successes of the first agent's first seed, and the page says so."""
+    n = document["agents"][0]["test_by_seed"][0]["success"]["count"]
+    among = f"{n} successes in {tests} tests" if n else f"{tests} tests without a success"
+    outcome, chosen = re.search(r"on case \d+: ([a-z ]+)\. Chosen from ([^:]+):", page).groups()
+    assert chosen == among
+    assert (outcome == "success") == (n > 0)
+
+
+def test_a_report_says_that_no_test_was_a_success(run_json, tmp_path):
+    config = tmp_path / "hard.toml"
+    config.write_text("[reach]\nsuccess_radius_m = 1e-4\n")
+    document = run_json(
+        *("compare", "--agents", "random", "--cases", 20, "--config", config),
+        *("--report", tmp_path / "report"),
+    )
+    page = (tmp_path / "report" / "index.html").read_text(encoding="utf-8")
+    check_choice(page, document, 20)
 
 
 def test_compare_writes_a_report_of_grasping(run_json, monkeypatch, tmp_path):
@@ -285,6 +307,7 @@ def test_compare_writes_a_report_of_grasping(run_json, monkeypatch, tmp_path):
     assert "compare --task grasp" in page
     assert "--babbles 50 --config paper --other-report ../index.html" in page
     assert "examples/ppo_study.py --task grasp" in page  # Where the stored row is from.
+    check_choice(page, document, 6)
     assert "http://" not in page
     assert "https://" not in page
 

@@ -37,7 +37,7 @@ class Experiences:
     """Which babbles can be learnt from (n,): the movement was legal, or the hand kept the object in
     sight of the eye. They are those that `HebbBabbling` learns from, in its order."""
     outcome: NDArray[Any]
-    """How each ended (n,), as in `info["outcome"]`; in grasping "success" or "lost"."""
+    """How each ended (n,), by the names in `info["outcome"]`; in grasping "success" or "lost"."""
 
     def __len__(self) -> int:
         """Number n of babbles."""

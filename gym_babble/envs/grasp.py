@@ -92,7 +92,9 @@ class BabbleGraspEnv(BabbleEnv):
 
     `is_success` (now), `ever_success` (in this episode), `reach` (any part of arm or hand has
     touched the object), `palm_reach` (the palm has), `held` (the hand has held it without support),
-    `outcome` (running, success, collision, timeout, lost), `reward_terms`.
+    `outcome` (running, success, collision, timeout, lost): a dict of booleans, one of them True;
+    `reward_terms`: a dict of numbers. All are booleans and numbers, so wrappers can make tensors of
+    them.
 
     ## Arguments
 

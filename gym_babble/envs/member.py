@@ -27,6 +27,15 @@ class BatchMember:
         self._i = i
         self._shown = 0
         self.ready = False
+        self.np_random_seed = -1
+        """Seed of its cases; −1 where it is unknown: before a reset, and after `set_state`."""
+        self.attributes: dict[str, Any] = {}
+        """What `set_attr` of the batch set."""
+
+    def seed(self, seed: int, stream: int) -> None:
+        """Starts the stream of cases anew."""
+        self._batch.seed(self._i, stream)
+        self.np_random_seed = seed
 
     def get_state(self) -> bytes:
         """The whole state, from which `set_state` continues bit for bit."""
@@ -41,16 +50,18 @@ class BatchMember:
         self._batch.load(self._i, state)
         self._shown = self._batch.moments(self._i)
         self.ready = True
+        self.np_random_seed = -1
 
-    def freeze(self) -> tuple[bytes, bool, int]:
+    def freeze(self) -> tuple[bytes, dict[str, Any]]:
         """All that a copy needs, before the first reset too."""
-        return self.get_state(), self.ready, self._shown
+        own = {k: v for k, v in self.__dict__.items() if k not in ("_interface", "_batch", "_i")}
+        return self.get_state(), own
 
-    def thaw(self, frozen: tuple[bytes, bool, int]) -> None:
+    def thaw(self, frozen: tuple[bytes, dict[str, Any]]) -> None:
         """Continues from what `freeze` gave."""
-        state, ready, shown = frozen
+        state, own = frozen
         self.set_state(state)
-        self.ready, self._shown = ready, shown
+        self.__dict__.update(own)
 
     def state_hash(self) -> int:
         """A number that two states share only if they are the same to the bit."""

@@ -71,12 +71,14 @@ class BabbleReachEnv(BabbleEnv):
       `obs="goal"` the arm stands still until the time limit instead, since ending early would pay.
     - `joint_limit` (terminated): in `pattern` control, the path asks for a posture outside of the
       joint ranges.
-    - `timeout`: truncated after 240 steps (12 s); in `pattern` control terminated, as every step.
+    - `timeout`: truncated after 240 steps (12 s). In `pattern` control every step is terminated and
+      truncated.
 
     ## Info
 
     `is_success` (now), `ever_success` (in this episode), `outcome` (running, success, collision,
-    joint_limit, timeout), `reward_terms`.
+    joint_limit, timeout): a dict of booleans, one of them True; `reward_terms`: a dict of numbers.
+    All are booleans and numbers, so wrappers can make tensors of them.
 
     ## Arguments
 

@@ -13,6 +13,7 @@ from gym_babble import _core
 from gym_babble.agents.base import predictor
 from gym_babble.config import config_json
 from gym_babble.envs import BabbleReachEnv
+from gym_babble.envs.interface import outcome_of
 from gym_babble.errors import ScenarioError
 from gym_babble.viz.style import FAINT, INK, LEFT, RED, RIGHT, row_of_axes, styled
 
@@ -59,7 +60,7 @@ def trajectories(
         action, _ = predict(observation, None, np.array([True]), True)  # noqa: FBT003
         *_, info = env.step(action)
         b1 = 0.5 + 0.5 * float(action[0])
-        made.append(Trajectory(case, env.trajectory, b1, info["outcome"]))
+        made.append(Trajectory(case, env.trajectory, b1, outcome_of(info)))
     return made
 
 

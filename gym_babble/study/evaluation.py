@@ -207,7 +207,8 @@ def _play(
         steps[running] += 1
         returns[running] += rewards[running]
         ending = running & ended
-        outcomes[ending] = infos["outcome"][ending]
+        for name in spec.outcomes:
+            outcomes[ending & infos["outcome"][name]] = name
         for name, values in facts.items():
             values[ending] = infos[name][ending]
         running &= ~ended

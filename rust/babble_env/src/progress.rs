@@ -72,6 +72,7 @@ impl Ending {
     /// Ends the step just made, after which the task is `done` or not, and says whether it
     /// terminated or truncated the episode.
     ///
+    /// An episode that the task ends at the time limit is both, as in Gymnasium's `TimeLimit`.
     /// An episode that failed is no success, even where positions alone would make it one.
     pub(crate) fn conclude(self, progress: &mut Progress, done: bool) -> [bool; 2] {
         progress.steps += 1;
@@ -82,8 +83,8 @@ impl Ending {
             progress.outcome = Outcome::Success;
         }
         let terminated = self.single_step || (progress.outcome != Outcome::Running && !self.goal);
-        let truncated = !terminated && progress.steps >= self.max_steps;
-        if truncated && progress.outcome == Outcome::Running {
+        let truncated = progress.steps >= self.max_steps;
+        if truncated && !terminated && progress.outcome == Outcome::Running {
             progress.outcome = if progress.is_success {
                 Outcome::Success
             } else {

@@ -45,6 +45,8 @@ for words in {commands}:
     ids=["without PyTorch", "without any extra"],
 )
 def test_the_commands_run(blocked, commands, tmp_path):
+    if commands == FIGURES:
+        pytest.importorskip("matplotlib", reason="the wheel's tests install no extra")
     program = PROGRAM.format(blocked=blocked, commands=commands)
     run = subprocess.run(
         [sys.executable, "-W", "error", "-c", program],

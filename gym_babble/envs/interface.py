@@ -7,12 +7,14 @@ import json
 import warnings
 from collections.abc import Mapping
 from difflib import get_close_matches
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gym_babble import _core
 from gym_babble.config import ConfigLike, config_json
+from gym_babble.envs.labels import SCENARIO_LABELS, check_labels, config_label
 from gym_babble.envs.registry import TASKS, CasePart, task_entry
 from gym_babble.envs.spaces import Spec, observation_space
 from gym_babble.errors import ConfigError, ScenarioError
@@ -23,19 +25,9 @@ if TYPE_CHECKING:
 
     from gym_babble.envs.registry import TaskEntry
 
-__all__ = [
-    "RENDER_MODES",
-    "SCENARIO_LABELS",
-    "Interface",
-    "check_seed",
-    "check_whole",
-    "document",
-    "outcome_of",
-]
+__all__ = ["RENDER_MODES", "Interface", "check_seed", "check_whole", "document", "outcome_of"]
 
 RENDER_MODES = ("human", "rgb_array", "rgb_array_list")
-SCENARIO_LABELS = ("protocol", "index")
-"""Parts of a scenario that say where it is from."""
 
 
 class Interface:
@@ -70,6 +62,11 @@ class Interface:
         codes = {str(name): code for code, name in enumerate(self.outcomes)}
         self.outcome_codes = tuple((name, codes[name]) for name in self.spec.outcomes)
         """The task's outcomes with the core's codes."""
+
+    @cached_property
+    def config_label(self) -> str:
+        """Name of the config, as cases bear it."""
+        return config_label(self.task, self.entry.name)
 
     @property
     def obs(self) -> str:
@@ -117,6 +114,7 @@ class Interface:
         if scenario is not None:
             if not isinstance(scenario, Mapping):
                 raise ScenarioError(f"scenario is a {type(scenario).__name__}, expected a Scenario")
+            check_labels(scenario, self.entry.name, self.options, self.config_label)
             for name in scenario:
                 if name not in (*parts, *SCENARIO_LABELS):
                     raise ConfigError(_unknown("scenario", str(name), tuple(parts)))

@@ -197,10 +197,30 @@ pub trait Task: fmt::Debug + Send + Sync + Sized + 'static {
     ) -> Result<RgbImage, EnvError>;
 }
 
-/// Reward of a goal form, from positions alone \[m\]: 0 within `radius` \[m\], else −1.
-pub(crate) fn goal_reward(radius: f64, achieved: &[f32], desired: &[f32]) -> f64 {
-    let pairs = achieved.iter().zip(desired);
-    let offsets = pairs.map(|(&a, &d)| f64::from(a) - f64::from(d));
-    let distance = offsets.map(|d| d * d).sum::<f64>().sqrt();
-    if distance <= radius { 0.0 } else { -1.0 }
+/// What a goal form can achieve: positions within a square, and when they count as a goal's.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct GoalSpace {
+    /// Greatest coordinate of a position \[m\].
+    pub(crate) bound: f64,
+    /// A goal is achieved within this distance \[m\].
+    pub(crate) radius: f64,
+}
+
+impl GoalSpace {
+    /// What an episode that failed has achieved: the corner of the square, where no arm gets.
+    pub(crate) const fn failure(self) -> [f32; 2] {
+        [self.bound as f32; 2]
+    }
+
+    /// Reward from positions alone \[m\]: 0 within the radius, else −1. A failure achieves no goal,
+    /// also not the corner, which hindsight makes a goal.
+    ///
+    /// Positions are compared as the f32 numbers that an agent stores.
+    pub(crate) fn reward(self, achieved: &[f32], desired: &[f32]) -> f64 {
+        let pairs = achieved.iter().zip(desired);
+        let offsets = pairs.map(|(&a, &d)| f64::from(a) - f64::from(d));
+        let distance = offsets.map(|d| d * d).sum::<f64>().sqrt();
+        let achieves = achieved != self.failure() && distance <= self.radius;
+        if achieves { 0.0 } else { -1.0 }
+    }
 }

@@ -137,22 +137,36 @@ fn streams_do_not_coincide() {
     assert!((mean - 1.0).abs() < 0.05, "{mean}");
 }
 
-/// Fig. 4: 4 targets, 36 starts on a circle around each, of which those kept can be played.
+/// Fig. 4: 4 targets, 36 different starts on a circle around each. All can be played, also with
+/// obstacle and start exchanged, and they are spread over all that can: between neighbours lie as
+/// many playable directions everywhere, up to one. Catches a rule that leaves starts out.
 #[test]
-fn fig4_is_144_places() {
+fn fig4_has_144_cases() {
     for task in tasks() {
         let cases = protocol::fig4(&task);
         assert_eq!(cases.len(), 144);
         let [near, far] = task.config.reach.distance_m;
-        for targets in cases.chunks_exact(36) {
-            let kept: Vec<_> = targets.iter().flatten().collect();
-            assert!(!kept.is_empty());
-            for case in kept {
+        for cases in cases.chunks_exact(36) {
+            let cases: Vec<_> = cases.iter().map(|case| case.unwrap()).collect();
+            let mut directions = Vec::new();
+            for case in &cases {
                 assert_playable(&task, case);
-                let target = targets.iter().flatten().next().unwrap().target;
-                assert_eq!(case.target, target);
+                assert_eq!(case.target, cases[0].target);
                 assert!((case.distance() - 0.5 * (near + far)).abs() < 1e-12);
+                let switched = case.switched(&task).unwrap();
+                assert_eq!(switched.hand, middle(case));
+                assert_eq!(switched.obstacle, Some(obstacle_at(&task, case.hand)));
+                let away = Vector2::from(case.hand) - Vector2::from(case.target);
+                directions.push(away.y.atan2(away.x).rem_euclid(std::f64::consts::TAU));
             }
+            assert!(directions.windows(2).all(|pair| pair[0] < pair[1]));
+            let steps: Vec<_> = directions
+                .windows(2)
+                .map(|pair| ((pair[1] - pair[0]) * 720.0 / std::f64::consts::TAU).round())
+                .collect();
+            let least = steps.iter().copied().fold(f64::INFINITY, f64::min);
+            let wide = steps.iter().filter(|&&step| step > least + 1.0).count();
+            assert!(wide <= 4, "{steps:?}"); // Gaps between arcs of playable directions.
         }
     }
 }

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::case::{GraspCase, GraspRequest};
 use super::enclosure::Grip;
 use super::entry::ENTRY;
-use super::episode::{self, Potential, goal_reward};
+use super::episode::{self, Potential};
 use super::options::GraspOptions;
 use super::sight::FOVEA_NEURONS;
 use super::state::{GraspState, SENSES};
@@ -152,7 +152,7 @@ impl Task for GraspTask {
     }
 
     fn goal_reward(&self, achieved: &[f32], desired: &[f32]) -> f64 {
-        goal_reward(&self.config, achieved, desired)
+        self.goal_space().reward(achieved, desired)
     }
 
     fn request(&self, asked: &CaseValues) -> GraspRequest {

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::config::ReachConfig;
 use super::entry::ENTRY;
-use super::episode::{self, Drawn, Sight, goal_reward};
+use super::episode::{self, Drawn, Sight};
 use super::options::ReachOptions;
 use super::request::CaseRequest;
 use super::state::{ReachState, SENSES};
@@ -167,7 +167,7 @@ impl Task for ReachTask {
     }
 
     fn goal_reward(&self, achieved: &[f32], desired: &[f32]) -> f64 {
-        goal_reward(&self.config, achieved, desired)
+        self.goal_space().reward(achieved, desired)
     }
 
     fn request(&self, asked: &CaseValues) -> CaseRequest {

@@ -18,7 +18,7 @@ mod task;
 pub use case::ReachCase;
 pub use config::ReachConfig;
 pub(crate) use entry::ENTRY;
-pub use episode::{Drawn, Sight, goal_reward};
+pub use episode::{Drawn, Sight};
 pub use movement::{Movement, MovementPath};
 pub use options::{MAX_EPISODE_STEPS, ReachOptions};
 pub use request::{CaseRequest, ObstacleRequest};

@@ -7,6 +7,7 @@ python examples/film.py --out docs/images/babble.gif    # about half a minute
 """
 
 import argparse
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from PIL import Image
 
 from gym_babble import HebbBabbling, scenarios
 from gym_babble.agents.loading import LoadedAgent
+from gym_babble.files import check_file, write_file
 from gym_babble.viz.film import Film, record
 
 SIZE = 560
@@ -67,6 +69,7 @@ def main() -> None:
     parser.add_argument("--babbles", type=int, default=1_000, help="babbles of grasping to learn")
     parser.add_argument("--cases", type=int, default=20, help="test cases to choose from")
     arguments = parser.parse_args()
+    check_file(arguments.out, "--out")
     reaching = HebbBabbling("BabbleReachPattern-v0", "conjunctive", seed=0)
     reaching.learn(arguments.movements, progress_bar=True)
     grasping = HebbBabbling("BabbleGrasp-v0", seed=0)
@@ -76,8 +79,10 @@ def main() -> None:
         film(grasping, "BabbleGrasp-v0", scenarios("palm_side", arguments.cases)),
     ]
     first, *rest = side_by_side(films)
-    first.save(arguments.out, save_all=True, append_images=rest, duration=100, loop=0)
-    print(f"{arguments.out}: {arguments.out.stat().st_size / 1e3:.0f} kB")
+    gif = BytesIO()
+    first.save(gif, "GIF", save_all=True, append_images=rest, duration=100, loop=0)
+    write_file(arguments.out, gif.getvalue())
+    print(f"{arguments.out}: {len(gif.getvalue()) / 1e3:.0f} kB")
 
 
 if __name__ == "__main__":

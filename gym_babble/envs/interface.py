@@ -6,6 +6,7 @@ import inspect
 import json
 import warnings
 from collections.abc import Mapping
+from copy import deepcopy
 from difflib import get_close_matches
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -31,7 +32,11 @@ RENDER_MODES = ("human", "rgb_array", "rgb_array_list")
 
 
 class Interface:
-    """Gymnasium's view of a task: its options, spaces, observations and cases."""
+    """Gymnasium's view of a task: its options, spaces, observations and cases.
+
+    It keeps nothing that it was given: a copy or a pickle has the config that was read, and not the
+    path, dict or list that it came from, which may have changed since.
+    """
 
     def __init__(
         self, task: str, *, config: ConfigLike, render_mode: str | None, options: Mapping[str, Any]
@@ -45,7 +50,8 @@ class Interface:
         self.task = _core.Task(task, config_json(config), given)
         self.render_mode = render_mode
         self._ignored: set[str] = set()
-        self.options: dict[str, Any] = self.entry.defaults | given
+        self._given = deepcopy(given)
+        self.options: dict[str, Any] = deepcopy(self.entry.defaults | given)
         """All options by name."""
         self.quantities: dict[str, Any] = {
             name: value if isinstance(value, float) else np.array(value)
@@ -62,6 +68,9 @@ class Interface:
         codes = {str(name): code for code, name in enumerate(self.outcomes)}
         self.outcome_codes = tuple((name, codes[name]) for name in self.spec.outcomes)
         """The task's outcomes with the core's codes."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _interface, (self.entry.name, self.task.config(), self.render_mode, self._given)
 
     @cached_property
     def config_label(self) -> str:
@@ -174,6 +183,11 @@ class Interface:
             )
         rewards = self.task.goal_reward(achieved.reshape(-1, width), desired.reshape(-1, width))
         return float(rewards[0]) if achieved.ndim == 1 else rewards.reshape(achieved.shape[:-1])
+
+
+def _interface(task: str, config: str, render_mode: str | None, given: Any) -> Interface:
+    """The interface that was copied or pickled."""
+    return Interface(task, config=json.loads(config), render_mode=render_mode, options=given)
 
 
 def _near(name: str, known: tuple[str, ...]) -> list[str]:

@@ -38,8 +38,8 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
     `SAME_STEP` puts the ended episode's last observation and info in `infos["final_obs"]` and
     `infos["final_info"]`; with `DISABLED` ended environments are reset by
     `reset(options={"reset_mask": mask})`. `reset(options={"scenario": [...]})` takes one case for
-    all environments or a list with one for each; options hold for autoresets, and a `reset_mask`
-    alone leaves them as they are.
+    all environments or a list with one for each; options hold for autoresets. A `reset_mask` alone
+    leaves them as they are, and so does None in the list for one environment.
     """
 
     metadata: dict[str, Any] = {  # noqa: RUF012 - declared by VectorEnv
@@ -83,18 +83,15 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
         """
         if render_mode == "human":
             raise ConfigError("render_mode = 'human' shows one environment; use gymnasium.make")
-        self._arguments: dict[str, Any] = {
-            "task": task or self.task_name,
-            "config": config,
-            "render_mode": render_mode,
-            "options": options,
-        }
+        self._interface = Interface(
+            task or self.task_name, config=config, render_mode=render_mode, options=options
+        )
         self.render_mode = render_mode
         check_whole("num_envs", num_envs, 1, 1_000_000, "environments")
         self.num_envs = num_envs
         self.autoreset_mode = _autoreset_mode(autoreset_mode)
         if threads is None:
-            threads = default_threads(num_envs, task_entry(self._arguments["task"]).envs_per_thread)
+            threads = default_threads(num_envs, self._interface.entry.envs_per_thread)
         check_whole("threads", threads, 1, 1024, "threads")
         self._threads = threads
         self._make_core()
@@ -113,7 +110,6 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
         self._own = frozenset(self.__dict__)
 
     def _make_core(self) -> None:
-        self._interface = Interface(**self._arguments)
         self._batch = _core.Batch(
             self._interface.task,
             self.num_envs,
@@ -164,7 +160,8 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
             self._seed(seed, mask)
             if requests is not None:
                 for i in chosen:
-                    self._batch.request(i, requests[i])
+                    if (request := requests[i]) is not None:
+                        self._batch.request(i, request)
             self._batch.reset(mask.tolist())
             for i in chosen:
                 self._members[i].begin()
@@ -185,6 +182,9 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
         """
         with self._batch:
             self._batch.step(as_actions(actions, self._shape))
+            if self.render_mode == "rgb_array_list":
+                for member in self._members:
+                    member.follow()
             shown = self._batch.all()
             infos = self._infos(shown, np.ones(self.num_envs, np.bool_))
             if self.autoreset_mode is AutoresetMode.SAME_STEP:
@@ -192,7 +192,9 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
             observation = self._observation(shown)
         return observation, shown["reward"], shown["terminated"], shown["truncated"], infos
 
-    def _read_options(self, options: Any) -> tuple[NDArray[np.bool_], list[dict[str, Any]] | None]:
+    def _read_options(
+        self, options: Any
+    ) -> tuple[NDArray[np.bool_], list[dict[str, Any] | None] | None]:
         """Which environments to reset, and what to ask of the cases of each."""
         everywhere = np.ones(self.num_envs, np.bool_)
         if options is None:
@@ -237,7 +239,7 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
             self._members[i].seed(value, stream)
         self._seeded = True
 
-    def _requests(self, options: Any) -> list[dict[str, Any]]:
+    def _requests(self, options: Any) -> list[dict[str, Any] | None]:
         cases = options.get("scenario") if isinstance(options, Mapping) else None
         if not isinstance(cases, Sequence) or isinstance(cases, str):
             return [self._interface.request(options)] * self.num_envs
@@ -245,7 +247,12 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
             raise ConfigError(
                 f"options['scenario'] has {len(cases)} cases, expected one or {self.num_envs}"
             )
-        return [self._interface.request({**options, "scenario": case}) for case in cases]
+        return [
+            None
+            if case is None and len(options) == 1
+            else self._interface.request({**options, "scenario": case})
+            for case in cases
+        ]
 
     def _observation(self, shown: Mapping[str, Any]) -> Any:
         goals = self._goals(shown)
@@ -310,7 +317,10 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
             self._add_info(infos, final, i)
 
     def render(self) -> tuple[Any, ...]:
-        """A frame, or a list of the new ones, of each environment.
+        """A frame of each environment, or a list of those since the last call.
+
+        A list spans autoresets: it has the frames of ended episodes too, of the last 1,000.
+        `reset` drops them.
 
         Raises:
             gymnasium.error.ResetNeeded: There was no reset yet.
@@ -415,7 +425,7 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
             self._seeded = True
 
     def __getstate__(self) -> dict[str, Any]:
-        hidden = ("_batch", "_interface", "_members")
+        hidden = ("_batch", "_members")
         state = {k: v for k, v in self.__dict__.items() if k not in hidden}
         with self._batch:
             return {"attributes": state, "core": [member.freeze() for member in self._members]}

@@ -23,6 +23,7 @@ from gym_babble.cli.output import (
     name_files,
     print_json,
     print_results,
+    table_files,
     write_table,
 )
 from gym_babble.files import check_folder
@@ -56,7 +57,7 @@ def table1(
     as_json: AsJson = False,
 ) -> None:
     """Table I: outcomes of reaching, beside the paper's rates."""
-    check_folder(folder, "--out")
+    check_folder(folder, "--out", table_files("table1"))
     table = rates.table1(
         seed=seed,
         seeds=seeds,

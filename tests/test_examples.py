@@ -52,6 +52,10 @@ RUNS = {
         "--seeds 1 --babbles 12 --cases 8",
         r"\| both, xi 0\.8 \| 6 cm \|.+\|",
     ),
+    "cleanrl_ppo.py": (
+        "--steps 2000 --num-envs 16",
+        r"success [01]\.\d\d in the last \d+ episodes",
+    ),
     "sac_her.py": ("--steps 4000 --cases 20", r"success 0\.\d+ \[0\.\d+, .+\]"),
 }
 ELSEWHERE = {"rllib_ppo.py"}

@@ -9,6 +9,7 @@ use super::movement::{Fidelity, MovementPath};
 use super::task::ReachTask;
 use crate::case::CaseValues;
 use crate::error::EnvError;
+use crate::options::Control;
 use crate::stream::Stream;
 
 /// How often a case is drawn before the config is called impossible.
@@ -133,7 +134,7 @@ impl CaseRequest {
 
     fn draw_ends(&self, task: &ReachTask, stream: &mut Stream) -> Result<ReachCase, EnvError> {
         match (self.start, self.target) {
-            (None, None) => ReachCase::draw_legal(task, stream, Fidelity::QuasiStatic),
+            (None, None) => ReachCase::draw_legal(task, stream, drawn_by(task)),
             (start, target) => draw_other_end(task, stream, start, target),
         }
     }
@@ -186,6 +187,15 @@ impl CaseRequest {
     }
 }
 
+/// How the movement is simulated by which a case is drawn. In `pattern` control the action is a whole
+/// movement, so one must be legal with the muscles' lag too. The other controls can wait on the way.
+const fn drawn_by(task: &ReachTask) -> Fidelity {
+    match task.options.control {
+        Control::Pattern => Fidelity::Full,
+        Control::DeltaPosture | Control::Posture | Control::Torque => Fidelity::QuasiStatic,
+    }
+}
+
 /// Draws the end that was not given, at a uniform direction and distance from the one that was.
 fn draw_other_end(
     task: &ReachTask,
@@ -213,11 +223,7 @@ fn draw_other_end(
         let Some(case) = ReachCase::between(task, hand, target) else {
             continue;
         };
-        if MovementPath::new(task, &case, [b1, 1.0 - b1])?.is_legal(
-            task,
-            &case,
-            Fidelity::QuasiStatic,
-        ) {
+        if MovementPath::new(task, &case, [b1, 1.0 - b1])?.is_legal(task, &case, drawn_by(task)) {
             return Ok(case);
         }
     }

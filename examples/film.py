@@ -15,7 +15,7 @@ import numpy as np
 from PIL import Image
 
 from gym_babble import HebbBabbling, scenarios
-from gym_babble.agents.loading import LoadedAgent
+from gym_babble.agents.loading import acting_agent
 from gym_babble.files import check_file, write_file
 from gym_babble.viz.film import Film, record
 
@@ -38,15 +38,17 @@ def shows(case: dict[str, Any]) -> tuple[float, ...]:
     return case["diameter"], float(np.arctan2(y, x) - case["start"][0])
 
 
-def film(agent: HebbBabbling, env_id: str, cases: list[Any]) -> Film:
+def film(agent: HebbBabbling, cases: list[Any]) -> Film:
     """The success that shows most."""
-    loaded = LoadedAgent(agent, env_id, "paper")
+    loaded = acting_agent(agent)
     for case in sorted(cases, key=shows, reverse=True):
         one = record(loaded, options={"scenario": case}, size=SIZE)
         if one.outcome == "success":
-            print(f"{env_id}: case {case['index']} of {case['protocol']}")
+            print(f"case {case['index']} of {case['protocol']}")
             return one
-    raise SystemExit(f"{env_id}: none of {len(cases)} cases was a success: learn more")
+    raise SystemExit(
+        f"none of {len(cases)} cases of {cases[0]['protocol']} was a success: learn more"
+    )
 
 
 def side_by_side(films: list[Film]) -> list[Image.Image]:
@@ -75,8 +77,8 @@ def main() -> None:
     grasping = HebbBabbling("BabbleGrasp-v0", seed=0)
     grasping.learn(arguments.babbles, progress_bar=True)
     films = [
-        film(reaching, "BabbleReachPattern-v0", scenarios("table1", arguments.cases)),
-        film(grasping, "BabbleGrasp-v0", scenarios("palm_side", arguments.cases)),
+        film(reaching, scenarios("table1", arguments.cases)),
+        film(grasping, scenarios("palm_side", arguments.cases)),
     ]
     first, *rest = side_by_side(films)
     gif = BytesIO()

@@ -26,9 +26,9 @@ style.check_format(arguments.out)
 settings = Settings(movements=arguments.movements, cases=arguments.cases, progress_bar=True)
 comparison = compare(arguments.agents, settings)
 for result in comparison.results:
-    first = result.trained[0].curve[0]
+    first, (test,) = result.trained[0].curve[0], result.tests
     print(
         f"{result.contender.title}, {result.contender.detail}: {first.success:.3f} after "
-        f"{first.control_steps:,} control steps, {result.rates['success']['rate']:.3f} on the tests"
+        f"{first.control_steps:,} control steps, {test.rate('success'):.3f} on the tests"
     )
 style.save(learning_curves(comparison), arguments.out)

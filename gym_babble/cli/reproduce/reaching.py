@@ -101,7 +101,6 @@ def fig4(
     halfway = movements_to_targets.trajectories(agent, cases, config)
     exchanged = [movements_to_targets.switched(case) for case in cases]
     switched = movements_to_targets.trajectories(agent, exchanged, config)
-    save(movements_to_targets.draw(halfway, switched), file)
     counts = movements_to_targets.reached(agent, seed, config)
     if as_json:
         print_json({"config": config, "variant": variant, "movements": movements, **counts})
@@ -109,6 +108,7 @@ def fig4(
         for name, found in counts["reached"].items():
             both = f"{found['halfway']} halfway, {found['switched']} switched"
             print_results(f"{name}: {both}, of {counts['cases']}")
+    save(movements_to_targets.draw(halfway, switched), file)
     name_files([file])
 
 

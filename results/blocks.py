@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from results.stores import Stores
 
 OUTCOMES = ("success", "collision", "joint_limit")
+AGENTS = ("scripted", "oracle")
 PANELS = ("halfway", "switched")
 SIZES = {"small": "2.4 cm", "big": "6 cm"}
 
@@ -278,7 +279,18 @@ def _grasping_row(title: str, cells: list[str], found: dict[str, Any], key: str)
     return [title, *cells, *split, *rest]
 
 
+def solved(stores: Stores) -> str:
+    """What the scripted agent and the oracle solve of the default cases."""
+    rows = [
+        [f"`{row['id']}`", row["control"], *(share(row[who] / row["cases"]) for who in AGENTS)]
+        for found in stores["solved"].values()
+        for row in found
+    ]
+    return markdown(["id", "control", *(f"`{who.title()}`" for who in AGENTS)], rows)
+
+
 BLOCKS: dict[str, Callable[[Stores], str]] = {
-    block.__name__: block for block in (table1_short, table1, fig4, ppo_reach, sizes, engines)
+    block.__name__: block
+    for block in (table1_short, table1, fig4, ppo_reach, sizes, engines, solved)
 }
 """The tables by name."""

@@ -19,6 +19,7 @@ REACHING = "--env-id BabbleReachPattern-v0"
 HOLD = "python examples/grasp_sizes.py"
 STEPS = "--env-id BabbleReach-v0"
 GRASPING = "--env-id BabbleGrasp-v0"
+SOLVED = ("BabbleReachGoal-v0", "BabbleGrasp-v0")
 
 STORES: dict[str, dict[str, str]] = {
     "table1": {
@@ -45,6 +46,7 @@ STORES: dict[str, dict[str, str]] = {
         "curves": "python examples/curves.py",
         "rules": "python examples/own_rule.py --movements 2000",
     },
+    "solved": {id_: f"python examples/solvable.py --ids {id_}" for id_ in SOLVED},
     "fig4": {"paper": "gym-babble reproduce fig4"},
     "fig5": {"paper": "gym-babble reproduce fig5"},
     "sizes": {

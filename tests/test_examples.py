@@ -100,6 +100,7 @@ def test_last_line(name, repository, monkeypatch, capsys, tmp_path):
         ("sensitivity.py", {"change", "success", "collision", "joint_limit", "legal_rate"}),
         ("grasp_sizes.py", {"diameter", "held", "edges"}),
         ("grasp_sides.py", {"rows", "all"}),
+        ("solvable.py", {"id", "control", "cases", "scripted", "oracle"}),
         ("grasp_interference.py", {"babbled_with", "mean", "spread", "babbled", "in_hand"}),
     ],
 )

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 OUTCOMES = ("success", "collision", "joint_limit")
 DISTANCES = (0, 1, 2, 4, 7, 15)
+AGENTS = ("scripted", "oracle")
 PANELS = ("halfway", "switched")
 SIZES = {"small": "2.4 cm", "big": "6 cm"}
 
@@ -311,11 +312,21 @@ def _grasping_row(title: str, cells: list[str], found: dict[str, Any], key: str)
     return [title, *cells, *split, *rest]
 
 
+def solved(stores: Stores) -> str:
+    """What the scripted agent and the oracle solve of the default cases."""
+    rows = [
+        [f"`{row['id']}`", row["control"], *(share(row[who] / row["cases"]) for who in AGENTS)]
+        for found in stores["solved"].values()
+        for row in found
+    ]
+    return markdown(["id", "control", *(f"`{who.title()}`" for who in AGENTS)], rows)
+
+
 BLOCKS: dict[str, Callable[[Stores], str]] = {
     block.__name__: block
     for block in (
         *(table1_short, table1, fig4, sensitivity, vote, table2_short, table2, hands, holding),
-        *(sizes, engines, sides, interference, periods, ppo_reach, grasping),
+        *(sizes, engines, sides, interference, periods, ppo_reach, grasping, solved),
     )
 }
 """The tables by name."""

@@ -19,6 +19,7 @@ REACHING = "--env-id BabbleReachPattern-v0"
 HOLD = "python examples/grasp_sizes.py"
 STEPS = "--env-id BabbleReach-v0"
 GRASPING = "--env-id BabbleGrasp-v0"
+SOLVED = ("BabbleReachGoal-v0", "BabbleGrasp-v0")
 
 STORES: dict[str, dict[str, str]] = {
     "table1": {
@@ -45,6 +46,7 @@ STORES: dict[str, dict[str, str]] = {
         "curves": "python examples/curves.py",
         "rules": "python examples/own_rule.py --movements 2000",
     },
+    "solved": {id_: f"python examples/solvable.py --ids {id_}" for id_ in SOLVED},
     "sensitivity": {"rows": "python examples/sensitivity.py"},
     "vote": {"rows": "python examples/obstacle_alone.py"},
     "fig4": {"paper": "gym-babble reproduce fig4"},
@@ -115,6 +117,7 @@ def derived(stores: Stores) -> dict[str, float]:
     del changed["camera frame fick"]
     return {
         "above_paper": ours - paper_tally()["success"]["rate"],
+        "inside_big_cm": -stores["interference"]["rows"][5]["mean"][0],
         "of_a_row": 1.96 * (none * (1 - none) / 2_000) ** 0.5,
         "of_other_changes": max(abs(success - none) for success in changed.values()),
     }

@@ -98,6 +98,12 @@ impl Task {
     }
 }
 
+/// Checks that options leave an environment what its id stands for.
+#[pyfunction]
+pub(crate) fn check_fixed(env_id: &str, options: &Bound<'_, PyDict>) -> PyResult<()> {
+    registry::check_fixed(env_id, &convert::options(options)?).map_err(errors::env)
+}
+
 /// All tasks with their environments, options, parts of a case and protocols, as JSON.
 #[pyfunction]
 pub(crate) fn registry_json() -> PyResult<String> {

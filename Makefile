@@ -39,7 +39,7 @@ demo: setup ## Compare the agents on both tasks and write figures and tables int
 	$(BIN)/gym-babble compare --task grasp --report report/grasp --other-report ../index.html
 
 PICTURES := docs/images
-pictures: setup ## Draw the pictures of README and docs again, without those of `make bench` (eight minutes)
+pictures: setup ## Draw the pictures of README and docs again, without those of `make bench` (some minutes)
 	$(BIN)/python examples/film.py --out $(PICTURES)/babble.gif
 	$(BIN)/python examples/learning_curves.py --out $(PICTURES)/learning.png
 	for figure in fig2 fig4 fig5 fig7 fig8 sight; do \

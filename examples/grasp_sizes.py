@@ -5,7 +5,6 @@ eye looks at them. docs/grasping.md has the results.
 """
 
 import argparse
-import os
 
 import numpy as np
 
@@ -19,7 +18,6 @@ parser.add_argument(
 )
 arguments = parser.parse_args()
 
-print(f"{os.cpu_count()} processors")
 print("| diameter [cm] | held | 95 % | flexion thumb, finger [deg] | edges in the fovea |")
 print("| --- | --- | --- | --- | --- |")
 for centimetres in arguments.diameters:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import asdict, fields, is_dataclass, replace
 
+import numpy as np
 import pytest
 
 from gym_babble import Config, _core, scenarios
@@ -257,13 +258,21 @@ OUT_OF_BOUNDS = [
     ({"body": {"eye": {"frame": "listing"}}}, "frame"),
     ({"body": {"eye": {"pan_deg": [10, -10]}}}, "pan_deg"),
     ({"body": {"obstacle": {"radius_m": 0}}}, "radius_m"),
-    ({"body": {"target": {"radius_m": float("nan")}}}, None),
+    ({"body": {"target": {"radius_m": float("nan")}}}, "body.target.radius_m: nan is not finite"),
+    ({"body": {"target": {"radius_m": np.float32("inf")}}}, "body.target.radius_m: inf is not"),
+    ({"body": {"arm": {"forearm_m": 10**400}}}, "body.arm.forearm_m: 10+ .*2.63"),
+    ({"body": {"arm": {"forearm_m": b"0.1"}}}, "body.arm.forearm_m: b'0.1' is not"),
+    ({"body": {"arm": {"forearm_m": object()}}}, "body.arm.forearm_m: <object"),
+    ({"body": {"hand": {"finger_m": (0.01, np.nan, 0.01, 0.01)}}}, r"body.hand.finger_m\[1\]: nan"),
+    ({"body": {"arm": {3: 0.1}}}, "body.arm: 3 is not the name"),
+    ({"grasp": {"diameters_m": [0.03] * 1001}}, "grasp.diameters_m: 1001 items"),
+    ({"grasp": {"diameters_m": np.zeros(10**7)}}, "grasp.diameters_m: 10000000 items"),
     ({"body": {"target": {"radius_m": None}}}, "radius_m"),
     ({"reach": {"distance_m": [0.2, 0.1]}}, "distance_m"),
     ({"reach": {"b_range": [0, 1]}}, "b_range"),
     ({"reach": {"physics_steps": 0}}, "physics_steps"),
     ({"reach": {"physics_steps": 2.5}}, "physics_steps"),
-    ({"reach": {"control_period_s": float("inf")}}, None),
+    ({"reach": {"control_period_s": float("inf")}}, "reach.control_period_s: inf is not finite"),
     ({"reach": {"success_radius_m": 0.5}}, "success_radius_m"),
     ({"reach": []}, "reach"),
     ({"grasp": []}, "grasp"),
@@ -292,7 +301,9 @@ OUT_OF_BOUNDS = [
     ({"body": "big"}, "body"),
     ({"profile": "giant"}, "giant"),
     ({"profile": 3}, "profile"),
-    ({"body": {1, 2}}, None),
+    ({"body": {1, 2}}, r"body: \{1, 2\} is not a number"),
+    ({"reach": {"physics_steps": np.True_}}, "reach.physics_steps"),
+    ({"reach": {"movement_s": np.zeros(2, "datetime64[s]")}}, "reach.movement_s: .*datetime64"),
 ]
 
 
@@ -322,6 +333,45 @@ def test_a_dataclass_with_wrong_values_is_refused():
             BabbleReachEnv(config=broken)
 
 
+def test_numpys_numbers_are_numbers():
+    given = {
+        "reach": {
+            "movement_s": np.float32(5),
+            "physics_steps": np.int64(5),
+            "distance_m": np.array([0.1, 0.2]),
+        },
+        "grasp": {"any_diameter_between": np.True_, "hold_steps": np.uint8(9)},
+        "body": {"muscles": {"kp": np.array(45)}},
+    }
+    plain = {
+        "reach": {"movement_s": 5.0, "physics_steps": 5, "distance_m": [0.1, 0.2]},
+        "grasp": {"any_diameter_between": True, "hold_steps": 9},
+        "body": {"muscles": {"kp": 45}},
+    }
+    assert config_json(given) == config_json(plain)
+    changed = replace(Config(), reach=replace(Config().reach, movement_s=np.float32(5)))
+    assert json.loads(config_json(changed))["reach"]["movement_s"] == 5
+
+
+def test_deep_dicts_and_circles_are_refused_by_their_field():
+    deep: dict = {}
+    inner = deep
+    for _ in range(3000):
+        inner["reach"] = {}
+        inner = inner["reach"]
+    circle: dict = {}
+    circle["body"] = [circle]
+    for config, field in ((deep, "reach.reach"), (circle, r"body\[0\].body")):
+        with pytest.raises(ConfigError, match=f"{field}.*nested in more than 16 levels"):
+            config_json(config)
+
+
+def test_a_config_of_numbers_that_are_not_finite_is_not_written():
+    config = replace(Config(), reach=replace(Config().reach, movement_s=float("nan")))
+    with pytest.raises(ConfigError, match=r"reach.movement_s: nan is not finite"):
+        config.to_json()
+
+
 def test_broken_files_are_refused_by_their_path(tmp_path):
     for name, content in (
         ("cut.json", b'{"profile": "pap'),
@@ -330,6 +380,12 @@ def test_broken_files_are_refused_by_their_path(tmp_path):
         ("bytes.toml", b"\xff\xfe\x00"),
         ("unknown.toml", b"[reach]\nspeed = 1\n"),
         ("body.yaml", b"profile: paper"),
+        ("twice.json", b'{"reach": {"movement_s": 5.0, "movement_s": 6.0}}'),
+        ("nan.toml", b"[reach]\nmovement_s = nan"),
+        ("far.json", b'{"reach": {"movement_s": 1e400}}'),
+        ("deep.json", b"[" * 100_000),
+        ("huge.json", b" " * 2**21),
+        ("picture.toml", b"\x89PNG\r\n\x1a\n"),
     ):
         path = tmp_path / name
         path.write_bytes(content)
@@ -337,6 +393,11 @@ def test_broken_files_are_refused_by_their_path(tmp_path):
             BabbleReachEnv(config=path)
     with pytest.raises(ConfigError, match="missing"):
         BabbleReachEnv(config="missing.toml")
+    with pytest.raises(ConfigError, match=r"'body.yaml' is not one of paper, icub, and not a file"):
+        BabbleReachEnv(config="body.yaml")
+    marked = tmp_path / "marked.json"
+    marked.write_text('{"profile": "icub"}', encoding="utf-8-sig")
+    assert Config.load(marked) == Config.profile_named("icub")
     with pytest.raises(ConfigError):
         BabbleReachEnv(config=tmp_path)
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from gym_babble import _core
-from gym_babble.agents.base import interface_of, processors
-from gym_babble.envs.interface import check_seed, check_whole
+from gym_babble.agents.base import interface_of
+from gym_babble.checks import check_flag, check_seed, check_threads, check_whole
 
 if TYPE_CHECKING:
     import numpy as np
@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from gym_babble.envs.interface import Interface
 
 __all__ = ["Experiences", "babble", "experiences_of"]
+
+MOST_BABBLES = 1_000_000
+"""Babbles whose experiences are kept at once."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,10 +76,10 @@ def babble(
         ConfigError: An argument is out of its bounds, or `env` is not an environment of this
             package.
     """
-    check_seed(seed)
-    check_whole("n", n, 1, 100_000_000, "babbles")
-    options = json.dumps({"quasi_static": True} if quasi_static else None)
-    return experiences_of(interface_of(env), n, seed, options, processors(threads))
+    n, seed = check_whole("n", n, 1, MOST_BABBLES, "babbles"), check_seed(seed)
+    fast = check_flag("quasi_static", quasi_static)
+    options = json.dumps({"quasi_static": True} if fast else None)
+    return experiences_of(interface_of(env), n, seed, options, check_threads(threads))
 
 
 def experiences_of(

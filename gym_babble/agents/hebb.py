@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,15 +11,26 @@ import numpy as np
 
 from gym_babble import _core
 from gym_babble.agents.babbling import experiences_of
-from gym_babble.agents.base import Planner, interface_of, processors
+from gym_babble.agents.base import Planner, interface_of
 from gym_babble.brain import is_own, rule_numbers, teach
-from gym_babble.envs.interface import Interface, check_seed, check_whole
+from gym_babble.checks import (
+    check_choice,
+    check_flag,
+    check_path,
+    check_seed,
+    check_threads,
+    check_whole,
+    plain,
+    shaped,
+    shown,
+)
+from gym_babble.envs.interface import Interface
 from gym_babble.envs.registry import task_entry
 from gym_babble.errors import AgentFileError, ConfigError
 from gym_babble.progress import track
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -31,6 +43,8 @@ __all__ = ["VARIANTS", "HebbBabbling"]
 VARIANTS = ("paper", "conjunctive")
 # How many babbles the paper's agent of a task learns from, and how many it learns from together.
 PAPER = {"reach": (20_000, 250), "grasp": (1_000, 50)}
+# The most that it learns from together, so that their experiences fit into memory.
+MOST_TOGETHER = 100_000
 # The environment that an agent from a file acts in, by its task.
 ACTS_IN = {"reach": {"control": "pattern", "reward": "sparse"}, "grasp": {}}
 
@@ -79,15 +93,14 @@ class HebbBabbling(Planner):
         brain: Mapping[str, Any] | None = None,
     ) -> None:
         super().__init__(env)
-        check_seed(seed)
+        seed, self._threads = check_seed(seed), check_threads(threads)
         task = self._interface.entry.name
-        numbers = json.loads(_core.brain_json(task, variant))
+        numbers = json.loads(_core.brain_json(task, check_choice("variant", variant, VARIANTS)))
         if rule is not None:
             numbers["rule"] = rule_numbers(rule)
-        _merge(numbers, brain or {}, "brain")
+        _merge(numbers, _changes(brain), "brain")
         self._rule: OwnRule | None = rule if is_own(rule) else None  # type: ignore[assignment]
-        self._threads = processors(threads)
-        babbling = {"quasi_static": True} if quasi_static else None
+        babbling = {"quasi_static": True} if check_flag("quasi_static", quasi_static) else None
         self._core = _core.Learner(
             task, json.dumps(numbers), seed, json.dumps(babbling), self._threads
         )
@@ -126,14 +139,15 @@ class HebbBabbling(Planner):
         paper, every = PAPER[self._interface.entry.name]
         babbles = paper if babbles is None else babbles
         every = every if callback_every is None else callback_every
-        check_whole("babbles", babbles, 0, 100_000_000, "babbles")
-        check_whole("callback_every", every, 1, 100_000_000, "babbles")
+        babbles = check_whole("babbles", babbles, 0, 100_000_000, "babbles")
+        every = check_whole("callback_every", every, 1, MOST_TOGETHER, "babbles")
+        show = check_flag("progress_bar", progress_bar)
+        if callback is not None and not callable(callback):
+            raise ConfigError(f"callback = {shown(callback)} is not a function")
         rule = None if self._rule is None else teach(self._rule, self.brain["rule"])
-        chunks = [every] * (babbles // every)
-        if babbles % every:
-            chunks.append(babbles % every)
+        chunks = (min(every, babbles - done) for done in range(0, babbles, every))
         with self._core:
-            for chunk in track(chunks, "babbling", total=babbles, show=progress_bar):
+            for chunk in track(chunks, "babbling", total=babbles, show=show):
                 self._core.learn(self._interface.task, chunk, rule)
                 if callback is not None and callback(self) is False:
                     break
@@ -197,12 +211,13 @@ class HebbBabbling(Planner):
             AgentFileError: The file is cut short, altered, or not an agent.
             ConfigError: It cannot act in the environment.
         """
+        data = check_path("path", path).read_bytes()
         try:
-            core, config = _core.Learner.load(Path(path).read_bytes(), processors(threads))
+            core, config = _core.Learner.load(data, check_threads(threads))
         except ValueError as error:
             raise AgentFileError(f"{path}: {error}") from error
         agent = cls.__new__(cls)
-        agent._threads, agent._rule = processors(threads), rule  # noqa: SLF001 - its own
+        agent._threads, agent._rule = check_threads(threads), rule  # noqa: SLF001 - its own
         agent._core = core  # noqa: SLF001 - its own
         if env is None:
             task = core.task()
@@ -241,13 +256,20 @@ class HebbBabbling(Planner):
     @weights.setter
     def weights(self, weights: Mapping[str, ArrayLike]) -> None:
         known = self.weights
+        if not isinstance(weights, Mapping):
+            raise ConfigError(f"weights = {shown(weights)} is not a dict")
         unknown = set(weights) - set(known)
         if unknown:
-            raise ConfigError(f"weights: {sorted(unknown)} unknown; there are {', '.join(known)}")
-        parts = {name: np.asarray(weights.get(name, known[name]), np.float32) for name in known}
-        for i, prefix in enumerate(self._core.prefixes()):
-            names = (f"{prefix}weights", f"{prefix}a_mean", f"{prefix}g_mean")
-            self._core.set(i, *(parts[name] for name in names))
+            raise ConfigError(
+                f"weights: {sorted(map(str, unknown))} unknown; there are {', '.join(known)}"
+            )
+        parts = {
+            name: shaped(name, weights.get(name, old), old.shape) for name, old in known.items()
+        }
+        with self._core:
+            for i, prefix in enumerate(self._core.prefixes()):
+                names = (f"{prefix}weights", f"{prefix}a_mean", f"{prefix}g_mean")
+                self._core.set(i, *(parts[name] for name in names))
 
     @property
     def input_shape(self) -> tuple[int, ...]:
@@ -295,6 +317,19 @@ class HebbBabbling(Planner):
         self._core, _ = _core.Learner.load(state["_saved"], self._threads)
 
 
+def _changes(brain: Any) -> dict[str, Any]:
+    """Numbers of a brain that a user changes, as JSON has them.
+
+    Raises:
+        ConfigError: It is not a dict, or a number is not finite.
+    """
+    if brain is None:
+        return {}
+    if not isinstance(brain, Mapping):
+        raise ConfigError(f"brain = {shown(brain)} is not a dict")
+    return dict(plain(brain, "brain"))
+
+
 def _merge(numbers: dict[str, Any], changes: Mapping[str, Any], path: str) -> None:
     """Replaces numbers of a brain.
 
@@ -304,7 +339,7 @@ def _merge(numbers: dict[str, Any], changes: Mapping[str, Any], path: str) -> No
     for name, value in changes.items():
         if name not in numbers:
             raise ConfigError(f"{path}.{name}: unknown field; there are {', '.join(numbers)}")
-        if isinstance(numbers[name], dict) and hasattr(value, "items"):
+        if isinstance(numbers[name], dict) and isinstance(value, dict):
             _merge(numbers[name], value, f"{path}.{name}")
         else:
             numbers[name] = value

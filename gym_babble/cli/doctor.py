@@ -1,6 +1,5 @@
 """`gym-babble doctor`: what is installed, whether the core computes correctly, and how fast."""
 
-import os
 import platform
 from hashlib import blake2b
 from time import perf_counter
@@ -12,6 +11,7 @@ import typer
 from rich.table import Table
 
 from gym_babble._core import debug_build
+from gym_babble.checks import processors
 from gym_babble.cli.arguments import AsJson
 from gym_babble.cli.output import print_json, print_results
 from gym_babble.envs import BabbleGraspEnv, BabbleReachEnv
@@ -46,7 +46,7 @@ def examine() -> dict[str, Any]:
         },
         "build": "debug" if debug_build else "release",
         "platform": f"{platform.system()} {platform.machine()}",
-        "threads": os.cpu_count() or 1,
+        "threads": processors(),
         "state_hash": f"{state:016x}",
         "state_hash_expected": f"{STATE_HASH:016x}",
         "same_bits": state == STATE_HASH,

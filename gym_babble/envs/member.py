@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import gymnasium
 
 from gym_babble.envs.spaces import need_reset
+from gym_babble.errors import SnapshotError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -38,6 +39,8 @@ class BatchMember:
         Raises:
             SnapshotError: The bytes are not such a state; the environment is as it was.
         """
+        if not isinstance(state, bytes):
+            raise SnapshotError(f"state is a {type(state).__name__}, expected bytes")
         self._batch.load(self._i, state)
         self._shown = self._batch.moments(self._i)
         self.ready = True

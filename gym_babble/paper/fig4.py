@@ -73,7 +73,7 @@ def switched(case: Scenario) -> Scenario:
 
 def starts_without_case(config: ConfigLike = "paper") -> NDArray[np.float64]:
     """Starts of Fig. 4 (n, 2) [m] that are out of reach or have the arm inside the obstacle."""
-    listed = _core.Task("reach", config_json(config), {}).cases("fig4", 1, 0, "test", 1)
+    listed = _core.Task("reach", config_json(config), "{}").cases("fig4", 1, 0, "test", 1)
     angles = 2.0 * np.pi * np.arange(STARTS) / STARTS
     missing = []
     for first in range(0, len(listed), STARTS):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -10,8 +9,8 @@ import gymnasium
 import numpy as np
 
 from gym_babble.agents import HebbBabbling
+from gym_babble.checks import check_whole, processors
 from gym_babble.config import Config, config_json
-from gym_babble.envs.interface import check_whole
 from gym_babble.errors import ConfigError
 from gym_babble.paper.holding import hold_rates
 from gym_babble.study.evaluation import Evaluation, evaluate, wilson
@@ -251,7 +250,7 @@ def _play(
         config=config,
         progress_bar=progress_bar,
         max_episode_steps=TEST_STEPS,
-        threads=os.cpu_count() or 1,
+        threads=processors(),
     )
 
 

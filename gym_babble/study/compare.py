@@ -8,7 +8,6 @@ learners and its own 1,000 (`cases`) tests.
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -59,9 +58,8 @@ def compare(
     if min(settings.seeds, settings.movements, settings.babbles) < 1:
         raise ConfigError("seeds, movements and babbles must be at least 1")
     began = perf_counter()
-    threads = os.cpu_count() or 1
     cases = [
-        scenarios(task.protocol, settings.cases, seed, config=settings.config, threads=threads)
+        scenarios(task.protocol, settings.cases, seed, config=settings.config, threads=None)
         for seed in range(settings.seeds)
     ]
     results: list[Result] = []

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any, Literal, TypeAlias, TypedDict, overload
 
 from gym_babble import _core
+from gym_babble.checks import check_choice, check_seed, check_threads, check_whole
 from gym_babble.config import ConfigLike, config_json
-from gym_babble.envs.interface import check_seed
 from gym_babble.envs.registry import TASKS
-from gym_babble.errors import ConfigError
 
 __all__ = [
     "PROTOCOLS",
@@ -25,6 +25,9 @@ PROTOCOLS = {protocol: task.name for task in TASKS.values() for protocol in task
 
 SPLITS = ("learning", "validation", "test")
 """Disjoint sets of cases."""
+
+MOST_CASES = 1_000_000
+"""Cases of one call."""
 
 
 ReachProtocol: TypeAlias = Literal["table1", "fig4"]
@@ -73,7 +76,7 @@ def scenarios(
     *,
     split: str = "test",
     config: ConfigLike = "paper",
-    threads: int = 1,
+    threads: int | None = 1,
 ) -> list[Scenario]: ...
 
 
@@ -85,7 +88,7 @@ def scenarios(
     *,
     split: str = "test",
     config: ConfigLike = "paper",
-    threads: int = 1,
+    threads: int | None = 1,
 ) -> list[GraspScenario]: ...
 
 
@@ -97,7 +100,7 @@ def scenarios(
     *,
     split: str = "test",
     config: ConfigLike = "paper",
-    threads: int = 1,
+    threads: int | None = 1,
 ) -> list[Scenario] | list[GraspScenario]: ...
 
 
@@ -108,7 +111,7 @@ def scenarios(
     *,
     split: str = "test",
     config: ConfigLike = "paper",
-    threads: int = 1,
+    threads: int | None = 1,
 ) -> Any:
     """The cases of a protocol, for `reset(options={"scenario": case})`.
 
@@ -122,7 +125,7 @@ def scenarios(
         seed: Seed of the random protocols.
         split: "test", or "validation" for choosing settings; they share no case, for any seed.
         config: Body and task, as for the environments.
-        threads: Threads to use; the cases do not depend on it.
+        threads: Threads to use; all processors for None. The cases do not depend on it.
 
     Returns:
         The cases, as `Scenario` for reaching and `GraspScenario` for grasping.
@@ -131,22 +134,17 @@ def scenarios(
         ConfigError: An unknown name, a number out of bounds, or an invalid config.
         ScenarioError: The config has no room for a case.
     """
-    if protocol not in PROTOCOLS:
-        raise ConfigError(f"protocol = {protocol!r} is not one of {', '.join(PROTOCOLS)}")
-    if n is not None and n < 1:
-        raise ConfigError(f"n = {n} is not at least 1")
-    check_seed(seed)
-    if split not in SPLITS:
-        raise ConfigError(f"split = {split!r} is not one of {', '.join(SPLITS)}")
-    many = 1000 if n is None else n
+    check_choice("protocol", protocol, PROTOCOLS)
+    check_choice("split", split, SPLITS)
+    seed, threads = check_seed(seed), check_threads(threads)
+    many = check_whole("n", 1000 if n is None else n, 1, MOST_CASES, "cases")
     name = PROTOCOLS[protocol]
     presets = TASKS[name].protocols[protocol].presets
-    cases = _core.Task(name, config_json(config), presets).cases(
-        protocol, many, seed, split, threads
-    )
+    task = _core.Task(name, config_json(config), json.dumps(presets))
+    cases = task.cases(protocol, many, seed, split, threads)
     numbered = [
         {"protocol": protocol, "index": i, **case}
         for i, case in enumerate(cases)
         if case is not None
     ]
-    return numbered[:n]
+    return numbered if n is None else numbered[:many]

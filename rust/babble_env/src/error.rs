@@ -48,14 +48,6 @@ pub enum EnvError {
         /// What it must be.
         expected: String,
     },
-    /// The value of an option is nothing that an option can be.
-    #[error("{option} = {value} is not a name, a finite number, True, False or a list of these")]
-    OptionText {
-        /// Name of the option.
-        option: String,
-        /// The value given.
-        value: String,
-    },
     /// A part of a case has the wrong count of numbers.
     #[error("{part} = {value}: expected {expected}")]
     CaseValue {

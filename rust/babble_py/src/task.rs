@@ -32,10 +32,11 @@ impl Task {
 
 #[pymethods]
 impl Task {
-    /// A task of the registry by its name, from a config as JSON and options by name.
+    /// A task of the registry by its name, from a config and options by name, both as JSON.
     #[new]
-    fn new(name: &str, config: &str, options: &Bound<'_, PyDict>) -> PyResult<Self> {
-        let options = convert::options(options)?;
+    fn new(name: &str, config: &str, options: &str) -> PyResult<Self> {
+        let options = serde_json::from_str(options)
+            .map_err(|error| errors::ConfigError::new_err(format!("options: {error}")))?;
         let make = || registry::task(name)?.make(Config::from_json(config)?, &options);
         Ok(Self {
             task: make().map_err(errors::env)?,

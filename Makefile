@@ -25,7 +25,7 @@ EXTENSION_SOURCES := Cargo.toml Cargo.lock $(shell find rust -type f -not -name 
 	$(foreach folder,$(NOT_IN_EXTENSION),-not -path '*/$(folder)/*'))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-rust test-python slow soak fuzz golden-native wasm lint lint-rust \
+.PHONY: help setup demo pictures test test-rust test-python slow soak fuzz golden-native wasm lint lint-rust \
 	lint-python lint-workflows deny bench microbench frameworks constraints audit-export clean
 
 help: ## List the targets
@@ -36,6 +36,13 @@ setup: $(STAMPS)/extension ## Install everything into .venv and build the extens
 demo: setup ## Compare the agents on both tasks and write figures and tables into report/
 	$(BIN)/gym-babble compare --report report --other-report grasp/index.html
 	$(BIN)/gym-babble compare --task grasp --report report/grasp --other-report ../index.html
+
+PICTURES := docs/images
+pictures: setup ## Draw the pictures of README and docs again, without those of `make bench` (eight minutes)
+	$(BIN)/python examples/film.py --out $(PICTURES)/babble.gif
+	$(BIN)/python examples/learning_curves.py --out $(PICTURES)/learning.png
+	for figure in fig2 fig4 fig5 fig7 fig8 sight; do \
+		$(BIN)/gym-babble reproduce $$figure --out $(PICTURES)/$$figure.png || exit 1; done
 
 test: test-rust test-python ## Run the Rust and the Python tests
 

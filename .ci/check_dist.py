@@ -7,6 +7,8 @@ import tarfile
 import zipfile
 from pathlib import Path
 
+from pypi_readme import RELATIVE
+
 SDIST_NEEDS = {
     ".cargo/config.toml",  # The seed of the property tests.
     "Cargo.lock",
@@ -19,12 +21,21 @@ TOY = b"BabbleToy-" + b"v0"
 """The id of the task that only `make setup` builds."""
 
 
+def check_description(path: Path, metadata: bytes) -> None:
+    """What PyPI shows has only absolute addresses."""
+    relative = [found.group() for found in RELATIVE.finditer(metadata.decode())]
+    if relative:
+        sys.exit(f"error: {path}: PyPI cannot follow {relative}: run .ci/pypi_readme.py first")
+
+
 def check_wheel(path: Path) -> None:
     """One abi3 wheel, with nothing in it but gym_babble/ and its metadata."""
     with zipfile.ZipFile(path) as wheel:
         names = wheel.namelist()
         if any(TOY in wheel.read(name) for name in names):
             sys.exit(f"error: {path} holds the toy task of development builds")
+        (metadata,) = (name for name in names if name.endswith(".dist-info/METADATA"))
+        check_description(path, wheel.read(metadata))
     strays = [name for name in names if not name.startswith(("gym_babble/", "gym_babble-"))]
     kinds = ("*.py", "*.pyi", "*.css", "*.json", "py.typed")
     sources = {str(source) for kind in kinds for source in Path("gym_babble").rglob(kind)}
@@ -38,6 +49,8 @@ def check_sdist(path: Path) -> None:
     """The workspace's sources, and nothing that was built."""
     with tarfile.open(path) as sdist:
         names = {name.partition("/")[2] for name in sdist.getnames()}
+        metadata = sdist.extractfile(f"{path.name.removesuffix('.tar.gz')}/PKG-INFO")
+        check_description(path, metadata.read())
     crates = {str(manifest) for manifest in Path("rust").glob("*/Cargo.toml")}
     missing = (SDIST_NEEDS | crates) - names
     built = [name for name in names if name.endswith((".so", ".pyd", ".pyc"))]

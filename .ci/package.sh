@@ -1,11 +1,13 @@
-# Called by .ci/run: the sdist, the wheel that the sdist alone makes, and tests of that wheel once installed.
+# Called by .ci/run: the sdist with the README as PyPI shows it, the wheel that this sdist alone makes, and
+# tests of that wheel once installed.
 
 packaging=$(mktemp -d)
 trap 'rm -rf "$packaging"' EXIT
 
 rm -rf dist
-.venv/bin/maturin sdist --out dist
-tar -xzf dist/gym_babble-*.tar.gz -C "$packaging"
+.venv/bin/maturin sdist --out "$packaging"
+tar -xzf "$packaging"/gym_babble-*.tar.gz -C "$packaging"
+.venv/bin/python .ci/pypi_readme.py "$packaging"/gym_babble-*/
 # The same target directory, where the dependencies are compiled already; our own crates look newer
 # than what lies there, so that they are compiled from what the sdist holds.
 find "$packaging" -name '*.rs' -exec touch {} +
@@ -13,6 +15,7 @@ find "$packaging" -name '*.rs' -exec touch {} +
     export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target}
     maturin=$PWD/.venv/bin/maturin dist=$PWD/dist
     cd "$packaging"/gym_babble-*/
+    "$maturin" sdist --out "$dist"
     "$maturin" build --release --out "$dist"
 )
 .venv/bin/python .ci/check_dist.py dist

@@ -17,13 +17,15 @@ from pathlib import Path
 
 CHECKOUT = Path(__file__).resolve().parent.parent
 
-# Gymnasium's checkers, determinism, states, pickling and forking; everything that is refused.
+# Gymnasium's checkers, determinism, states, pickling and forking; everything that is refused; the
+# commands, of which the wheel alone serves those without pictures.
 TESTS = (
     "test_bad_input.py",
     "test_config.py",
     "test_env.py",
     "test_env_reach.py",
     "test_toy.py",
+    "test_without_extras.py",
     "test_smoke.py",
 )
 HELPERS = ("conftest.py", "comparing.py")

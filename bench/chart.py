@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
@@ -9,6 +10,7 @@ from matplotlib.figure import Figure
 
 from bench.cases import BATCHES, CASES, THREADS, batch_name
 from bench.process import ROOT
+from gym_babble.files import write_file
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -51,7 +53,9 @@ def write(results: Mapping[str, Any]) -> None:
         left, right = figure.subplots(1, 2, width_ratios=(1.25, 1))
         _bars(left, results["rows"])
         _lines(right, results["rows"])
-        figure.savefig(PICTURE, dpi=150)
+        buffer = BytesIO()
+        figure.savefig(buffer, format="png", dpi=150)
+    write_file(PICTURE, buffer.getvalue())
 
 
 def _bars(axes: Axes, rows: Mapping[str, Any]) -> None:

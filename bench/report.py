@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from bench.cases import BATCHES, CASES, LARGE_BATCHES, THREADS, batch_name
 from bench.process import ROOT
+from gym_babble.files import write_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -257,7 +258,7 @@ def write(results: Results) -> None:
     """Writes the blocks of all pages."""
     for name in PAGES:
         path = ROOT / name
-        path.write_text(filled(path.read_text(encoding="utf-8"), results), encoding="utf-8")
+        write_file(path, filled(path.read_text(encoding="utf-8"), results))
 
 
 if __name__ == "__main__":

@@ -30,6 +30,7 @@ from bench import chart, machine, report
 from bench.cases import CASES, OURS, RUST, Case
 from bench.process import ROOT, VENVS, CaseError, measure
 from gym_babble import _core
+from gym_babble.files import write_file
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -66,15 +67,18 @@ class Samples:
             raise SystemExit("error: --resume: the last run had other rows, rounds or seconds")
         for line in lines[1:]:
             self._take(json.loads(line))
-        if not lines:
-            SAMPLES.write_text(json.dumps(run) + "\n", encoding="utf-8")
+        self._lines = lines or [json.dumps(run)]
+        self._write()
 
     def add(self, turn: int, name: str, row: Row | None, error: str | None) -> None:
         """Adds a measurement and writes it to the file."""
         sample = {"turn": turn, "name": name, "row": row, "error": error}
         self._take(sample)
-        with SAMPLES.open("a", encoding="utf-8") as file:
-            file.write(json.dumps(sample) + "\n")
+        self._lines.append(json.dumps(sample))
+        self._write()
+
+    def _write(self) -> None:
+        write_file(SAMPLES, "\n".join(self._lines) + "\n")
 
     def _take(self, sample: dict[str, Any]) -> None:
         key = sample["turn"], sample["name"]
@@ -171,17 +175,17 @@ def arguments() -> argparse.Namespace:
 def finish(samples: Samples, run: dict[str, Any], *, whole: bool) -> int:
     """Writes the results; after a whole run, the docs too."""
     rows = samples.medians()
-    results = {"about": machine.describe() | run if whole else run, "rows": rows}
-    text = json.dumps(results, indent=1, ensure_ascii=False) + "\n"
-    (RESULTS if whole else PART).write_text(text, encoding="utf-8")
-    if whole:
-        report.write(results)
-        chart.write(results)
     for name, row in rows.items():
         figures = "  ".join(f"{key} {row[key]:g}" for key in row if key != "rounds")
         print(f"{name:24}  {figures}")
     for (_, name), error in samples.errors.items():
         print(f"{name:24}  failed: {error}")
+    results = {"about": machine.describe() | run if whole else run, "rows": rows}
+    text = json.dumps(results, indent=1, ensure_ascii=False) + "\n"
+    write_file(RESULTS if whole else PART, text)
+    if whole:
+        report.write(results)
+        chart.write(results)
     return 1 if samples.errors else 0
 
 

@@ -5,8 +5,10 @@ python examples/ppo_reach.py --preset delta_posture   # step by step: about a mi
 """
 
 import argparse
+from io import BytesIO
 
 from gym_babble import evaluate, scenarios
+from gym_babble.files import check_file, write_file
 from gym_babble.study.ppo import train_ppo
 from gym_babble.study.presets import PRESETS
 from gym_babble.study.tasks import REACH, task_of
@@ -19,12 +21,16 @@ parser.add_argument("--steps", type=int, help="steps to learn from; the preset's
 parser.add_argument("--cases", type=int, default=1_000, help="cases of Table I to be tested on")
 parser.add_argument("--save", help="file for the model, which PPO.load reads")
 arguments = parser.parse_args()
+if arguments.save:
+    check_file(arguments.save, "--save")
 
 trained = train_ppo(arguments.preset, steps=arguments.steps, progress_bar=True)
 for point in trained.curve:
     print(f"{point.steps:8d} steps  {point.seconds:6.1f} s  success {point.success:.3f}")
 if arguments.save:
-    trained.agent.save(arguments.save)
+    model = BytesIO()
+    trained.agent.save(model)
+    write_file(arguments.save, model.getvalue())
 
 cases = scenarios("table1", arguments.cases)
 result = evaluate(trained.agent, trained.env_id, cases, **trained.env_kwargs)

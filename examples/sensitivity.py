@@ -5,9 +5,10 @@ docs/model.md has the results.
 """
 
 import argparse
+from statistics import fmean
 from typing import Any
 
-from gym_babble import Evaluation, HebbBabbling, evaluate, scenarios
+from gym_babble import HebbBabbling, evaluate, scenarios
 from gym_babble.envs import BabbleReachEnv
 
 FICK = {"frame": "fick", "pan_deg": [-180.0, 180.0], "tilt_deg": [-90.0, 0.0]}
@@ -39,13 +40,15 @@ print("| change | success | collision | joint limit | legal |")
 print("| --- | --- | --- | --- | --- |")
 for name, changes, brain, movements in CHANGES:
     config = {"profile": "paper", **changes}
-    total, legal = Evaluation((), (), ()), 0.0
+    tests, legal = [], []
     for seed in range(100, 100 + arguments.seeds):
         env = BabbleReachEnv(control="pattern", reward="sparse", config=config)
         agent = HebbBabbling(env, seed=seed, brain=brain)
         agent.learn(arguments.movements or movements)
         cases = scenarios("table1", arguments.cases, seed, split="validation", config=config)
-        total += evaluate(agent, cases=cases, config=config)
-        legal += agent.learnt_rate / arguments.seeds
-    rates = (total.rate(outcome) for outcome in ("success", "collision", "joint_limit"))
-    print(f"| {name} | {' | '.join(f'{rate:.3f}' for rate in rates)} | {legal:.3f} |", flush=True)
+        tests.append(evaluate(agent, cases=cases, config=config))
+        legal.append(agent.learnt_rate)
+    outcomes = ("success", "collision", "joint_limit")
+    rates = [fmean(test.rate(outcome) for test in tests) for outcome in outcomes]
+    row = " | ".join(f"{rate:.3f}" for rate in (*rates, fmean(legal)))
+    print(f"| {name} | {row} |", flush=True)

@@ -103,10 +103,10 @@ CALLS = {
     "load_agent": (load_agent, {"path": "missing", "env": None}),
     "predict": (
         Scripted().predict,
-        {"observation": np.zeros(9), "state": None, "episode_start": None},
+        {"observation": np.zeros(11), "state": None, "episode_start": None},
     ),
-    "decide": (HebbBabbling().decide, {"observation": np.zeros(9)}),
-    "recall": (HebbBabbling().recall, {"observation": np.zeros(9)}),
+    "decide": (HebbBabbling().decide, {"observation": np.zeros(11)}),
+    "recall": (HebbBabbling().recall, {"observation": np.zeros(11)}),
     "weights": (
         lambda weights: setattr(HebbBabbling(), "weights", weights),
         {"weights": {"a_mean": np.zeros(441)}},
@@ -192,7 +192,7 @@ def test_an_argument_of_any_kind_is_taken_or_refused_at_once(name, argument):
         (lambda: brain.Association(3, 2, eta=np.nan), "eta = nan"),
         (lambda: brain.Association(3, 2).learn([0, 0, np.nan], [0, 0]), r"g\[2\] = nan"),
         (lambda: brain.TimeBaseGenerator(0.5, 0.5).curve(10**12), r"n = 10+ .*1000000\]"),
-        (lambda: HebbBabbling().decide(np.zeros((2, 2, 9))), r"shape \(2, 2, 9\)"),
+        (lambda: HebbBabbling().decide(np.zeros((2, 2, 11))), r"shape \(2, 2, 11\)"),
         (lambda: HebbBabbling().decide({"eye": np.zeros(3)}), r"'eye'.*shape \(3,\).*\(2,\)"),
     ],
 )

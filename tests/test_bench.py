@@ -168,6 +168,17 @@ def test_the_docs_tables_are_the_stored_runs(repository, results, page):
     assert report.filled(text, results) == text
 
 
+def test_the_docs_cost_of_independent_fingers_is_the_stored_runs(repository, results):
+    free, held = (
+        results["rows"][f"physics-{scene}-18"]["cpu_us"]
+        / results["rows"][f"physics-{scene}-9"]["cpu_us"]
+        for scene in ("free", "held")
+    )
+    for page in ("docs/model.md", "gym_babble/config.py", "rust/babble_body/src/config.rs"):
+        text = re.sub(r"[\s/]+", " ", (repository / page).read_text(encoding="utf-8"))
+        assert f"{free:.1f} to {held:.1f} times" in text, page
+
+
 def test_every_table_stands_on_a_page(repository):
     pages = "".join((repository / page).read_text(encoding="utf-8") for page in report.PAGES)
     assert {name for _, name, _ in report.BLOCK.findall(pages)} == set(report.BLOCKS)

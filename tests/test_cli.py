@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 import subprocess
 import sys
 
@@ -258,13 +259,34 @@ def test_compare_writes_a_report_of_one_file(run_json, tmp_path):
     assert document == json.loads((folder / "results.json").read_text(encoding="utf-8"))
     assert [row["agent"] for row in document["agents"]] == ["hebb-paper", "random"]
     for row in document["agents"]:
-        check_rates(row["test"], 50)
+        check_rates(row["test_by_seed"][0], 50)
     page = (folder / "index.html").read_text(encoding="utf-8")
     assert 'src="data:image/png;base64,' in page
     assert 'src="data:image/svg+xml;base64,' in page
     assert "http://" not in page
     assert "https://" not in page
     assert str(tmp_path.parent.parent) not in page.replace(str(folder), "")
+    check_choice(page, document, 50)
+
+
+def check_choice(page, document, tests):
+    """A film is one of the successes of the first agent's first seed, and the page says so."""
+    n = document["agents"][0]["test_by_seed"][0]["success"]["count"]
+    among = f"{n} successes in {tests} tests" if n else f"{tests} tests without a success"
+    outcome, chosen = re.search(r"on case \d+: ([a-z ]+)\. Chosen from ([^:]+):", page).groups()
+    assert chosen == among
+    assert (outcome == "success") == (n > 0)
+
+
+def test_a_report_says_that_no_test_was_a_success(run_json, tmp_path):
+    config = tmp_path / "hard.toml"
+    config.write_text("[reach]\nsuccess_radius_m = 1e-4\n")
+    document = run_json(
+        *("compare", "--agents", "random", "--cases", 20, "--config", config),
+        *("--report", tmp_path / "report"),
+    )
+    page = (tmp_path / "report" / "index.html").read_text(encoding="utf-8")
+    check_choice(page, document, 20)
 
 
 def test_compare_writes_a_report_of_grasping(run_json, monkeypatch, tmp_path):
@@ -277,7 +299,7 @@ def test_compare_writes_a_report_of_grasping(run_json, monkeypatch, tmp_path):
     )
     assert document == json.loads((folder / "results.json").read_text(encoding="utf-8"))
     assert [row["agent"] for row in document["agents"]] == ["hebb-paper", "ppo-stored"]
-    check_rates(document["agents"][0]["test"], 6, GRASP)
+    check_rates(document["agents"][0]["test_by_seed"][0], 6, GRASP)
     page = (folder / "index.html").read_text(encoding="utf-8")
     assert page.count('src="data:image/svg+xml;base64,') == 4  # Curves, Fig. 7 and 8, the sight.
     assert page.count('src="data:image/png;base64,') == 2
@@ -285,6 +307,7 @@ def test_compare_writes_a_report_of_grasping(run_json, monkeypatch, tmp_path):
     assert "compare --task grasp" in page
     assert "--babbles 50 --config paper --other-report ../index.html" in page
     assert "examples/ppo_study.py --task grasp" in page  # Where the stored row is from.
+    check_choice(page, document, 6)
     assert "http://" not in page
     assert "https://" not in page
 
@@ -293,19 +316,23 @@ def test_reproduce_table1(run_json, run, tmp_path):
     words = ("reproduce", "table1", "--seeds", 2, "--cases", 50, "--movements", MOVEMENTS)
     document = run_json(*words, "--out", tmp_path)
     assert document == json.loads((tmp_path / "table1.json").read_text(encoding="utf-8"))
-    assert [row["seed"] for row in document["by_seed"]] == [0, 1]
-    check_rates(document["pooled"], 100)
-    mean = np.mean([row["success"]["rate"] for row in document["by_seed"]])
-    assert document["over_seeds"]["success"]["mean"] == pytest.approx(mean)
-    assert document["pooled"]["success"]["rate"] == pytest.approx(mean)
     with (tmp_path / "table1.csv").open(newline="") as file:
         lines = list(csv.DictReader(file))
+    assert [row["seed"] for row in document["by_seed"]] == [0, 1]
+    for row in document["by_seed"]:
+        check_rates(row, 50)
+    rates = [row["success"]["rate"] for row in document["by_seed"]]
+    found = document["over_seeds"]["success"]
+    assert found["mean"] == pytest.approx(np.mean(rates))
+    assert [found["min"], found["max"]] == sorted(rates)
+    second = run_json(*words[:2], "--seed", 1, "--seeds", 1, *words[4:], "--out", tmp_path)
+    assert second["by_seed"] == document["by_seed"][1:]
     assert [float(line["success"]) for line in lines] == [
         row["success"]["rate"] for row in document["by_seed"]
     ]
     code, printed, _ = run(*words, "--control", "delta_posture", "--out", tmp_path)
     assert code == 0
-    assert "pooled" in printed
+    assert "range of seeds" in printed
 
 
 @pytest.mark.parametrize("figure", ["fig2", "fig4", "fig5"])
@@ -324,9 +351,9 @@ def test_reproduce_table2(run_json, tmp_path):
     assert document == json.loads((tmp_path / "table2.json").read_text(encoding="utf-8"))
     with (tmp_path / "table2.csv").open(newline="") as file:
         lines = list(csv.DictReader(file))
-    grid = [size["tests"]["table2"]["pooled"] for size in document["sizes"]]
-    told = [int(line["tests"]) for line in lines if line["protocol"] == "table2"]
-    assert told == [found["tests"] for found in grid]
+    grid = [size["tests"]["table2"]["by_seed"][0] for size in document["sizes"]]
+    told = [int(line["cases"]) for line in lines if line["protocol"] == "table2"]
+    assert told == [found["cases"] for found in grid]
 
 
 @pytest.mark.parametrize("figure", ["fig7", "fig8", "sight"])

@@ -9,13 +9,14 @@ from rich.console import Console
 
 from gym_babble import evaluate, scenarios
 from gym_babble.config import Config
-from gym_babble.errors import ConfigError
+from gym_babble.errors import ConfigError, StudyError
 from gym_babble.study import contenders, learning
-from gym_babble.study.compare import STUDIES, compare
+from gym_babble.study.compare import compare
 from gym_babble.study.comparison import TrainedResult
 from gym_babble.study.contenders import CONTENDERS, Settings
 from gym_babble.study.presets import PRESETS
 from gym_babble.study.rates import OUTCOMES
+from gym_babble.study.stored import STUDIES, Study
 from gym_babble.study.tasks import GRASP
 
 SMALL = Settings(cases=50, movements=500, ppo_steps=1)
@@ -93,8 +94,10 @@ def test_json_holds_every_rate(comparison):
     document = json.loads(json.dumps(comparison.to_json(), allow_nan=False))
     assert document["paper"]["test"]["success"]["rate"] == 0.67
     for row in document["agents"]:
-        assert sum(row["test"][name]["count"] for name in OUTCOMES) == 50
-        assert sum(row["test"][name]["rate"] for name in OUTCOMES) == pytest.approx(1.0)
+        (test,) = row["test_by_seed"]
+        assert sum(test[name]["count"] for name in OUTCOMES) == 50
+        assert sum(row["test"][name]["mean"] for name in OUTCOMES) == pytest.approx(1.0)
+        assert "by_size" not in test
 
 
 def test_the_tables_fit_80_characters_and_lose_nothing(comparison, grasping):
@@ -121,8 +124,8 @@ def test_agents_of_grasping_are_tested_on_the_same_cases(grasping):
         if isinstance(result, TrainedResult) and result.contender.key != "random":
             assert evaluate(result.trained[0].agent, "BabbleGrasp-v0", cases) == result.tests[0]
     # Who knows the geometry grasps, who acts at random does not: the rows are not exchanged.
-    assert grasping.result("scripted").rates["success"]["count"] == 8
-    assert grasping.result("random").rates["success"]["count"] == 0
+    assert grasping.result("scripted").rates_by_seed[0]["success"]["count"] == 8
+    assert grasping.result("random").rates_by_seed[0]["success"]["count"] == 0
 
 
 def test_hebb_grasping_counts_what_it_babbled(grasping):
@@ -141,7 +144,7 @@ def test_ppo_learns_to_grasp_when_it_is_asked_for():
     (one,) = result.trained
     assert one.control_steps == 8_192  # One rollout.
     assert one.curve[-1].control_steps == one.control_steps
-    assert result.rates["cases"] == 8
+    assert result.rates_by_seed[0]["cases"] == 8
 
 
 def test_json_of_grasping_holds_every_rate_and_where_the_stored_row_is_from(grasping):
@@ -149,8 +152,7 @@ def test_json_of_grasping_holds_every_rate_and_where_the_stored_row_is_from(gras
     assert (document["task"], document["protocol"]) == ("grasp", "palm_side")
     assert document["babbles"] == 60
     assert "movements" not in document
-    for row in document["agents"]:
-        test = row["test"]
+    for test in (test for row in document["agents"] for test in row["test_by_seed"]):
         assert sum(test[name]["count"] for name in GRASP.outcomes) == test["cases"]
         assert test["palm_reach"]["count"] <= test["reach"]["count"] <= test["cases"]
         assert test["success"]["count"] <= test["reach"]["count"]
@@ -162,26 +164,63 @@ def test_json_of_grasping_holds_every_rate_and_where_the_stored_row_is_from(gras
     assert stored["presets"]["grasp"]["env_id"] == "BabbleGrasp-v0"
 
 
+def test_results_of_grasping_are_split_by_size(grasping):
+    # One rate for both sizes misleads: the big object is held, and the small one is missed.
+    cases = scenarios("palm_side", 8)
+    for result in grasping.results:
+        if not isinstance(result, TrainedResult):
+            continue
+        (rates,), (test,) = result.rates_by_seed, result.tests
+        assert list(rates["by_size"]) == ["2.4 cm", "6 cm"]
+        for size, diameter in (("2.4 cm", 0.024), ("6 cm", 0.06)):
+            of_size = [
+                outcome
+                for case, outcome in zip(cases, test.outcomes, strict=True)
+                if case["diameter"] == diameter
+            ]
+            assert rates["by_size"][size]["cases"] == len(of_size)
+            assert rates["by_size"][size]["success"]["count"] == of_size.count("success")
+        assert [row.title for row in result.rates] == ["", "2.4 cm", "6 cm"]
+    assert "6 cm" in printed(grasping)
+
+
 def test_the_stored_row_is_the_studys(grasping):
-    study = json.loads((STUDIES / "ppo_grasp.json").read_text(encoding="utf-8"))
+    study = Study.read(STUDIES / "ppo_grasp.json")
     result = grasping.result("ppo-stored")
-    assert result.rates["cases"] == sum(run["cases"] for run in study["runs"])
-    for name in (*GRASP.outcomes, *GRASP.facts):
-        assert result.rates[name]["count"] == sum(run[name] for run in study["runs"])
-    assert [len(one.curve) for one in result.trained] == [
-        len(run["curve"]) for run in study["runs"]
-    ]
+    for rates, run in zip(result.rates_by_seed, study.runs, strict=True):
+        assert {name: rates[name]["count"] for name in GRASP.rates} | {
+            "cases": rates["cases"]
+        } == run.counts
+    # Seeds are not pooled: their mean and range, then a row with each one's own interval.
+    first, *rest = [row for row in result.rates if "cm" not in row.title]
+    success = [run.counts["success"] / run.counts["cases"] for run in study.runs]
+    assert first.rates["success"]["rate"] == pytest.approx(sum(success) / len(success))
+    assert first.rates["success"]["low"] == min(success)
+    assert first.rates["success"]["high"] == max(success)
+    assert [row.title for row in rest] == [f"seed {run.seed}" for run in study.runs]
+    assert [row.rates["success"]["rate"] for row in rest] == success
+    assert [len(one.curve) for one in result.trained] == [len(run.curve) for run in study.runs]
     assert not isinstance(result, TrainedResult)
 
 
 def test_the_study_is_a_whole_one_of_todays_preset():
     # Catches a trial run that was left in the package, and a preset that was tuned afterwards.
-    study = json.loads((STUDIES / "ppo_grasp.json").read_text(encoding="utf-8"))
-    assert study["presets"] == {"grasp": json.loads(json.dumps(PRESETS["grasp"].to_json()))}
-    assert [run["seed"] for run in study["runs"]] == [0, 1, 2]
-    for run in study["runs"]:
-        assert run["steps"] == PRESETS["grasp"].steps
-        assert run["cases"] == 1000
+    study = Study.read(STUDIES / "ppo_grasp.json")
+    assert study.presets == {"grasp": json.loads(json.dumps(PRESETS["grasp"].to_json()))}
+    assert [run.seed for run in study.runs] == [0, 1, 2]
+    for run in study.runs:
+        assert run.steps == PRESETS["grasp"].steps
+        assert run.counts["cases"] == 1000
+
+
+def test_a_study_is_read_as_it_was_written(tmp_path):
+    study = Study.read(STUDIES / "ppo_grasp.json")
+    study.write(tmp_path / "study.json")
+    assert Study.read(tmp_path / "study.json") == study
+    for broken in ("", "[]", "{}", '{"runs": [{"seed": 0}]}'):
+        (tmp_path / "study.json").write_text(broken)
+        with pytest.raises(StudyError, match=r"study\.json: not a stored study"):
+            Study.read(tmp_path / "study.json")
 
 
 def test_a_study_of_another_body_is_left_out():
@@ -190,14 +229,25 @@ def test_a_study_of_another_body_is_left_out():
     assert "paper" in found.skipped["ppo-stored"]
 
 
-def test_seeds_are_pooled():
-    two = compare(["random"], Settings(seeds=2, cases=50))
-    one = two.results[0]
+def test_seeds_are_not_pooled():
+    # As if they were cases, they would look far more certain than they are.
+    settings = Settings(seed=5, seeds=2, cases=50)
+    (one,) = compare(["random"], settings).results
+    assert one.seeds == (5, 6)
     assert len(one.trained) == len(one.tests) == 2
     assert one.tests[0] != one.tests[1]
-    assert one.rates["cases"] == 100
-    both = [rates["success"]["count"] for rates in one.rates_by_seed]
-    assert one.rates["success"]["count"] == sum(both)
+    rates = [test.rate("success") for test in one.tests]
+    told = one.to_json()
+    assert told["test"]["success"]["mean"] == pytest.approx(sum(rates) / 2)
+    assert (told["test"]["success"]["min"], told["test"]["success"]["max"]) == (
+        min(rates),
+        max(rates),
+    )
+    for seed, test, row in zip((5, 6), one.tests, told["test_by_seed"], strict=True):
+        assert (row["seed"], row["cases"]) == (seed, 50)
+        assert (row["success"]["low"], row["success"]["high"]) == test.interval("success")
+        assert test.cases == tuple(scenarios("table1", 50, seed))
+    assert [row.title for row in one.rates] == ["", "seed 5", "seed 6"]
 
 
 def test_without_stable_baselines3_the_others_run(monkeypatch):
@@ -225,6 +275,8 @@ def test_bad_settings_are_refused():
         compare(["random"], Settings(config="octopus"))
     with pytest.raises(ConfigError, match="seeds"):
         compare(["random"], Settings(seeds=0))
+    with pytest.raises(ConfigError, match="seed"):
+        compare(["random"], Settings(seed=-1))
     with pytest.raises(ConfigError, match="babbles"):
         compare(["random"], Settings(task="grasp", babbles=0))
     with pytest.raises(ConfigError, match="fly"):

@@ -5,6 +5,7 @@ import re
 import runpy
 import sys
 from functools import partial
+from importlib.metadata import version
 
 import pytest
 import torch
@@ -12,6 +13,14 @@ import torch
 from gym_babble.study import compare, ppo
 
 RUNS = {
+    "film.py": (
+        "--movements 500 --babbles 100 --out {folder}/babble.gif",
+        r".+/babble\.gif: \d+ kB",
+    ),
+    "learning_curves.py": (
+        "--movements 500 --cases 20 --agents hebb-paper hebb-conjunctive --out {folder}/curves.png",
+        r"Hebb conjunctive, obstacle × eye: 0\.\d+ after [\d,]+ control steps, 0\.\d+ on the tests",
+    ),
     "hebb_reach.py": (
         "--movements 250 --cases 50",
         r"success 0\.\d+ \[0\.\d+, .+\] \(paper: 0\.67\)",
@@ -81,6 +90,32 @@ def test_what_a_study_of_grasping_writes_is_what_compare_shows(
     settings = compare.Settings(task="grasp", cases=1)
     (result,) = compare.compare(["ppo-stored"], settings).results
     (run,) = study["runs"]
-    assert result.rates["cases"] == 6
-    assert result.rates["timeout"]["count"] == run["timeout"]
+    (rates,) = result.rates_by_seed
+    assert rates["cases"] == run["counts"]["cases"] == 6
+    assert rates["timeout"]["count"] == run["counts"]["timeout"]
+    assert sum(part["cases"] for part in run["by_size"].values()) == 6
     assert result.trained[0].control_steps == run["control_steps"] == 8_192
+
+
+def test_a_study_goes_on_with_the_runs_that_are_missing(repository, monkeypatch, capsys, tmp_path):
+    path = repository / "examples" / "ppo_study.py"
+
+    def study(*words):
+        arguments = f"--presets pattern --steps 512 --cases 20 --out {tmp_path}".split()
+        monkeypatch.setattr(sys, "argv", [str(path), *arguments, *words])
+        runpy.run_path(str(path), run_name="__main__")
+        capsys.readouterr()
+        return json.loads((tmp_path / "ppo_reach.json").read_text(encoding="utf-8"))["runs"]
+
+    first = study("--seeds", "1-1")
+    assert [run["seed"] for run in first] == [1]
+    both = study("--seeds", "2", "--resume")
+    assert [run["seed"] for run in both] == [0, 1]
+    assert both[1] == first[0]  # Its seconds too: it did not run again.
+    for run in both:
+        assert run["versions"]["torch"] == version("torch")
+        assert run["machine"]["torch_threads"] == 1
+        assert run["validation"]["split"] == "validation"
+    assert [run["seed"] for run in study("--seeds", "1")] == [0]
+    with pytest.raises(SystemExit, match="number of cases"):
+        study("--seeds", "1", "--resume", "--cases", "21")

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from matplotlib.image import imread
-from scipy import stats
 
 from gym_babble import HebbBabbling, Scripted, scenarios
 from gym_babble.errors import ConfigError
@@ -12,7 +11,7 @@ from gym_babble.paper.fig4 import starts_without_case, switched, trajectories
 from gym_babble.paper.fig5 import weight_sets
 from gym_babble.study.compare import compare
 from gym_babble.study.contenders import Settings
-from gym_babble.study.rates import share, t_interval
+from gym_babble.study.rates import share
 from gym_babble.viz import style
 from gym_babble.viz.curves import learning_curves
 from gym_babble.viz.film import GAP, contact_sheet
@@ -147,17 +146,6 @@ def test_a_contact_sheet_begins_and_ends_with_the_film():
     assert (sheet[4 : 4 + GAP] == 255).all()
     assert sheet[0, 0, 0] == 0
     assert sheet[-1, -1, 0] == 29
-
-
-@pytest.mark.parametrize("n", [2, 3, 10, 11, 12, 31, 200])
-def test_t_interval_is_students(n):
-    values = np.random.default_rng(n).normal(0.7, 0.02, n)
-    low, high = stats.t.interval(0.95, n - 1, loc=values.mean(), scale=stats.sem(values))
-    assert t_interval(values) == pytest.approx((low, high), abs=1e-5)
-
-
-def test_one_value_has_no_t_interval():
-    assert t_interval([0.7]) is None
 
 
 def test_share_has_four_characters():

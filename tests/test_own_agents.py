@@ -70,7 +70,7 @@ def test_agents_of_ones_own_are_tested_by_name(own):
     assert evaluate(f"{own}:Plain", cases=cases) != bulge
     assert evaluate("scripted", cases=cases) == evaluate(Scripted(), cases=cases)
     (result,) = compare([f"{own}:Bulge"], Settings(cases=30)).results
-    assert result.rates["success"]["count"] == bulge.count("success")
+    assert result.rates_by_seed[0]["success"]["count"] == bulge.count("success")
     assert result.contender.title == "Bulge"
 
 

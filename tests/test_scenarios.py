@@ -126,10 +126,42 @@ def test_evaluation_counts_what_happened():
     assert low < result.rate("success") <= high
     reached = tuple(outcome == "success" for outcome in result.outcomes)
     assert result.facts == {"is_success": reached, "ever_success": reached}
-    twice = result + result
-    assert twice.count("success") == 2 * result.count("success")
-    assert twice.facts["is_success"] == reached * 2
-    assert isinstance(twice, Evaluation)
+    assert result.count("is_success") == result.count("success") == sum(reached)
+    assert result.cases == tuple(cases)
+    assert isinstance(result, Evaluation)
+
+
+@pytest.mark.parametrize("ask", ["count", "rate", "interval"])
+def test_an_unknown_outcome_or_fact_is_an_error_that_names_what_was_meant(ask):
+    # A rate of 0.0 for a word with a slip was believed.
+    result = evaluate(Scripted(), cases=scenarios("table1", 3))
+    with pytest.raises(ConfigError, match=r"'sucess'.*did you mean 'success'"):
+        getattr(result, ask)("sucess")
+    with pytest.raises(ConfigError, match=r"'held' is not one of success, collision"):
+        getattr(result, ask)("held")
+    assert result.rate("timeout") == 0.0
+
+
+def test_an_evaluation_is_split_by_size():
+    cases = scenarios("palm_side", 12)
+    result = evaluate("random", "BabbleGrasp-v0", cases)
+    split = result.by_size()
+    assert list(split) == ["2.4 cm", "6 cm"]
+    for size, part in split.items():
+        assert {f"{100 * case['diameter']:g} cm" for case in part.cases} == {size}
+    for i, case in enumerate(cases):
+        part = split[f"{100 * case['diameter']:g} cm"]
+        at = part.cases.index(case)
+        for name in ("outcomes", "steps", "returns"):
+            assert getattr(part, name)[at] == getattr(result, name)[i]
+        for name, held in result.facts.items():
+            assert part.facts[name][at] == held[i]
+    config = {"grasp": {"any_diameter_between": True}}
+    mixed = evaluate("random", "BabbleGrasp-v0", scenarios("palm_side", 12, config=config))
+    low, high = mixed.by_size().values()
+    assert len(low) + len(high) == 12
+    assert max(c["diameter"] for c in low.cases) < min(c["diameter"] for c in high.cases)
+    assert evaluate(Scripted(), cases=scenarios("table1", 3)).by_size() == {}
 
 
 def test_evaluation_equals_playing_one_by_one_in_every_control():

@@ -12,6 +12,7 @@ from gym_babble import HebbBabbling, scenarios
 from gym_babble.paper import fig7, fig8, holding, sight
 from gym_babble.paper import table2 as grasping
 from gym_babble.paper.tables import table2_tables
+from gym_babble.study.evaluation import wilson
 
 
 @pytest.fixture(scope="module")
@@ -24,14 +25,20 @@ def test_rates_are_those_of_the_tests(table):
     rows = list(csv.DictReader(io.StringIO(table.to_csv())))
     for size in document["sizes"]:
         for protocol, found in size["tests"].items():
-            pooled, by_seed = found["pooled"], found["by_seed"]
-            assert pooled["tests"] == sum(seed["tests"] for seed in by_seed)
+            means, by_seed = found["over_seeds"], found["by_seed"]
+            assert means["seeds"] == len(by_seed)
             for fact in grasping.FACTS:
-                assert pooled[fact]["count"] == sum(seed[fact]["count"] for seed in by_seed)
-                assert pooled[fact]["low"] <= pooled[fact]["rate"] <= pooled[fact]["high"]
+                rates = [seed[fact]["rate"] for seed in by_seed]
+                assert means[fact]["mean"] == pytest.approx(np.mean(rates))
+                assert (means[fact]["min"], means[fact]["max"]) == (min(rates), max(rates))
+                for seed in by_seed:  # The interval is that of the seed's own cases.
+                    count, cases = seed[fact]["count"], seed["cases"]
+                    interval = (seed[fact]["low"], seed[fact]["high"])
+                    assert interval == wilson(count, cases)
             # A palm that touches is a part that touches, and what is held was touched.
-            assert pooled["held"]["count"] <= pooled["reach"]["count"]
-            assert pooled["palm_reach"]["count"] <= pooled["reach"]["count"]
+            for seed in by_seed:
+                assert seed["held"]["count"] <= seed["reach"]["count"]
+                assert seed["palm_reach"]["count"] <= seed["reach"]["count"]
             of_row = [r for r in rows if r["protocol"] == protocol]
             of_row = [r for r in of_row if float(r["diameter_m"]) == size["diameter"]]
             assert len(of_row) == len(by_seed)
@@ -57,6 +64,14 @@ def test_the_reflex_holds(table):
         assert rate["penetration_mm"] < 3.0
 
 
+def test_a_first_seed_goes_on_where_an_earlier_table_ended(table):
+    second = grasping.table2(seed=1, seeds=1, cases=6, babbles=30, hold_trials=0)
+    for size, whole in zip(second.sizes, table.sizes, strict=True):
+        for protocol, tests in size.tests.items():
+            of_seed_1 = {seed: test for seed, test in whole.tests[protocol].items() if seed == 1}
+            assert tests == of_seed_1
+
+
 @pytest.mark.slow
 def test_the_reflex_holds_in_90_of_100(capsys):
     rates = holding.hold_rates(100)
@@ -70,7 +85,8 @@ def test_tables_show_both_sizes_beside_the_paper(table):
     for part in table2_tables(table.to_json()):
         console.print(part)
     text = console.export_text()
-    for known in ("36.99", "46.34", ".715", ".111", "2.4 cm, thumb", "6 cm, palm_side"):
+    seeds = ("2 seeds", "seed 0", "seed 1")
+    for known in ("36.99", "46.34", ".715", ".111", "2.4 cm, thumb", "6 cm, palm_side", *seeds):
         assert known in text
 
 

@@ -195,7 +195,8 @@ def test_other_threads_run_while_a_big_picture_is_drawn(task, camera):
 
 def times(envs):
     """Steps that each environment has made since its reset, as shares of its time."""
-    return envs._batch.all()["senses"][:, -1]
+    clock = dict(envs.interface.spec.slices)["time"]
+    return envs._batch.all()["senses"][:, clock.start]
 
 
 @pytest.mark.parametrize(
@@ -384,10 +385,14 @@ def test_two_threads_on_one_environment_get_an_error_and_no_step_is_lost(task, o
         env.reset(seed=0)
         zeros = np.zeros(env.action_space.shape, np.float32)
 
-        def step(env=env, zeros=zeros, at=at):
+        clock = dict(env.interface.spec.slices)["time"]
+
+        def step(env=env, zeros=zeros, at=at, clock=clock):
             observation = env.step(zeros)[0]
-            time_sense = observation["observation"] if obs == "goal" else observation["time"]
-            return round(float(time_sense[at][..., -1]) * limit)
+            time_sense = (
+                observation["observation"][..., clock] if obs == "goal" else observation["time"]
+            )
+            return round(float(time_sense[at][..., 0]) * limit)
 
         steps, busy = hammer(step, lambda given, busy: len(given) >= 50 and len(busy) >= 5)
         # Each step was seen once, by the thread that made it.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,10 +26,12 @@ from gym_babble.checks import (
 from gym_babble.envs.interface import Interface
 from gym_babble.envs.registry import task_entry
 from gym_babble.errors import AgentFileError, ConfigError
+from gym_babble.files import write_file
 from gym_babble.progress import track
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -184,9 +185,13 @@ class HebbBabbling(Planner):
     def save(self, path: str | Path) -> None:
         """Writes the agent: weights as safetensors, all else as JSON in its metadata.
 
-        A rule of your own is not written: pass it to `load`.
+        A rule of your own is not written: pass it to `load`. An earlier file is replaced once the
+        new one is complete.
+
+        Raises:
+            OSError: The file cannot be written; an earlier one is whole.
         """
-        Path(path).write_bytes(self._core.save(self._interface.task.config()))
+        write_file(path, self._core.save(self._interface.task.config()))
 
     @classmethod
     def load(

@@ -18,6 +18,7 @@ __all__ = [
     "Cases",
     "ConfigName",
     "EnvId",
+    "FirstSeed",
     "Movements",
     "OwnConfig",
     "Picture",
@@ -46,7 +47,8 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document to
 TaskName = Annotated[str, typer.Option(help="Task.", **one_of(TASKS))]
 ConfigName = Annotated[str, typer.Option(help="paper, icub, or a TOML or JSON file.")]
 Seed = Annotated[int, typer.Option(min=0, help="Seed.")]
-Seeds = Annotated[int, typer.Option(min=1, help="Number of seeds: 0, 1, ...")]
+FirstSeed = Annotated[int, typer.Option("--seed", min=0, help="First seed.")]
+Seeds = Annotated[int, typer.Option(min=1, help="Number of seeds: --seed, --seed + 1, ...")]
 Cases = Annotated[int, typer.Option(min=1, help="Tests for each seed.")]
 Movements = Annotated[int, typer.Option(min=1, help="Legal movements to learn from (reaching).")]
 Babbles = Annotated[int, typer.Option(min=1, help="Babbles to learn from (grasping).")]

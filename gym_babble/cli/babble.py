@@ -16,7 +16,8 @@ from gym_babble.cli.arguments import (
     Variant,
 )
 from gym_babble.cli.learning import learn_grasping, learn_reaching
-from gym_babble.cli.output import check_folder_of, print_json, print_results
+from gym_babble.cli.output import print_json, print_results
+from gym_babble.files import check_file
 from gym_babble.study.rates import share
 from gym_babble.study.tasks import TASKS
 
@@ -36,20 +37,19 @@ def babble(
     as_json: AsJson = False,
 ) -> None:
     """Let an agent babble and learn, and save it."""
-    check_folder_of(file)
+    check_file(file, "--out")
     settings: dict[str, Any] = {"config": config, "seed": seed}
     if task == "reach":
         agent = learn_reaching(variant, movements, seed, config, quasi_static=quasi_static)
         settings = {"variant": variant, **settings, "quasi_static": quasi_static}
     else:
         agent = learn_grasping(babbles, seed, config)
-    agent.save(file)
     trials, accepted = agent.babbled, agent.learnt
     names, rate = TASKS[task], accepted / trials
     if as_json:
         counts = {names.trials: trials, f"{names.accepted}_{names.trials}": accepted}
         print_json({"file": str(file), **settings, **counts, f"{names.accepted}_rate": rate})
-        return
-    print_results(
-        f"{trials:,} {names.trials}, {accepted:,} of them {names.accepted} ({share(rate)}): {file}"
-    )
+    else:
+        shares = f"{accepted:,} of them {names.accepted} ({share(rate)})"
+        print_results(f"{trials:,} {names.trials}, {shares}: {file}")
+    agent.save(file)

@@ -11,7 +11,7 @@ from gym_babble.cli.output import print_json, print_results
 from gym_babble.study import evaluation
 from gym_babble.study.rates import paper_tally, tally
 from gym_babble.study.scenarios import scenarios
-from gym_babble.study.tables import rate_cells, rates_table
+from gym_babble.study.tables import rate_cells, rate_rows, rates_table
 from gym_babble.study.tasks import task_of
 
 __all__ = ["evaluate"]
@@ -43,7 +43,8 @@ def evaluate(
         print_json({"agent": agent, "env_id": loaded.env_id, "seed": seed, "split": split, **rates})
         return
     table = rates_table(f"{cases:,} {task.cases}, 95 % Wilson intervals", task=task)
-    table.add_row(Path(agent).name, *rate_cells(rates, task))
+    for row in rate_rows([rates], [seed], task):
+        table.add_row(row.title or Path(agent).name, *rate_cells(row.rates, task))
     if task.paper is not None:
         table.add_row("the paper", *rate_cells(paper_tally()))
     print_results(table)

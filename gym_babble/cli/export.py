@@ -6,8 +6,9 @@ from typing import Annotated, Literal
 import typer
 
 from gym_babble.cli.arguments import ConfigName, TaskName
-from gym_babble.cli.output import check_folder_of, name_files
+from gym_babble.cli.output import name_files
 from gym_babble.export import export_mjcf, export_urdf
+from gym_babble.files import check_file, write_file
 
 __all__ = ["export"]
 
@@ -29,7 +30,7 @@ def export(
 ) -> None:
     """Write the robot for other simulators."""
     if file is not None:
-        check_folder_of(file)
+        check_file(file, "--out")
     if kind == "mjcf":
         text = export_mjcf(task, config=config, seed=seed, timestep=timestep)
     else:
@@ -37,5 +38,5 @@ def export(
     if file is None:
         typer.echo(text, nl=False)
         return
-    file.write_text(text, encoding="utf-8")
+    write_file(file, text)
     name_files([file])

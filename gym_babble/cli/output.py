@@ -7,11 +7,10 @@ from typing import Any
 import typer
 from rich.console import Console
 
-from gym_babble.errors import ConfigError
+from gym_babble.files import check_file, write_files
 from gym_babble.viz.style import check_format
 
 __all__ = [
-    "check_folder_of",
     "check_picture",
     "name_files",
     "print_json",
@@ -48,22 +47,13 @@ def name_files(files: list[Path]) -> None:
         say(f"... and {len(files) - 3} more")
 
 
-def check_folder_of(path: Path) -> None:
-    """Raises `ConfigError` if the folder of a file to be written is missing."""
-    if not path.absolute().parent.is_dir():
-        raise ConfigError(f"--out {path}: folder {path.parent} is missing; create it first")
-
-
 def check_picture(path: Path) -> None:
-    """Checks folder, format and the extra `figures` before long work."""
-    check_folder_of(path)
+    """Checks file, format and the extra `figures` before long work."""
+    check_file(path, "--out")
     check_format(path)
 
 
 def write_table(folder: Path, name: str, document: dict[str, Any], csv: str) -> None:
     """Writes a table as JSON and CSV into a folder, which is created if missing."""
-    folder.mkdir(exist_ok=True)
-    files = [folder / f"{name}.json", folder / f"{name}.csv"]
-    files[0].write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
-    files[1].write_text(csv, encoding="utf-8")
-    name_files(files)
+    text = json.dumps(document, indent=2) + "\n"
+    name_files(write_files(folder, {f"{name}.json": text, f"{name}.csv": csv}))

@@ -7,8 +7,9 @@ import typer
 
 from gym_babble.agents.loading import named_agent
 from gym_babble.cli.arguments import AgentName, EnvId, OwnConfig, Seed, one_of
-from gym_babble.cli.output import check_folder_of, name_files, say
+from gym_babble.cli.output import name_files, say
 from gym_babble.envs.registry import TASKS
+from gym_babble.files import check_folder
 from gym_babble.viz.film import record, save_film
 
 __all__ = ["render"]
@@ -34,7 +35,7 @@ def render(
     config: OwnConfig = None,
 ) -> None:
     """Film an episode of an agent: a contact sheet, and frames, GIF or MP4."""
-    check_folder_of(folder)
+    check_folder(folder, "--out")
     loaded = named_agent(agent, env_id=env_id, config=config, seed=seed)
     film = record(loaded, seed=seed, camera=camera, size=size)
     say(f"{film.outcome} after {len(film.frames) - 1} control steps")

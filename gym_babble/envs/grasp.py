@@ -44,18 +44,18 @@ class BabbleGraspEnv(BabbleEnv):
 
     | sense | size | low | high | unit |
     | --- | --- | --- | --- | --- |
+    | `arm` | 2 | 0 | 1 | shoulder and elbow, share of range |
     | `eye` | 2 | 0 | 1 | pan and tilt, share of range |
     | `fovea` | 441 | 0 | 1 | edges (Sobel) in the image's middle 63 × 63, in 21 × 21 blocks |
-    | `arm` | 2 | 0 | 1 | shoulder and elbow, share of range |
     | `hand` | 2 | 0 | 1 | flexion of thumb and virtual finger, share of range |
     | `stretch` | 4 | −range | range | equilibrium point minus angle [rad]; in torque ±1 |
-    | `touch` | 3 | 0 | 1 | normal force of palm, thumb, fingers on the object over 20 N |
     | `time` | 1 | 0 | 1 | share of the episode |
+    | `touch` | 3 | 0 | 1 | normal force of palm, thumb, fingers on the object over 20 N |
 
-    `"flat"` is the same in one Box(455,), in this order. `"goal"` is a Dict of `observation`
-    (flat), `achieved_goal` (the object's centre) and `desired_goal` (where it is to be carried),
-    (x, y) [m]. `"retina"` is the senses and the eye's image, `retina_size` × `retina_size` × 3,
-    uint8.
+    `"flat"` is the same in one Box(455,), in this order, which is that of Gymnasium's
+    `FlattenObservation`. `"goal"` is a Dict of `observation` (flat), `achieved_goal` (the object's
+    centre) and `desired_goal` (where it is to be carried), (x, y) [m]. `"retina"` is the senses and
+    the eye's image, `retina_size` × `retina_size` × 3, uint8.
 
     ## Rewards
 

@@ -38,16 +38,17 @@ class BabbleReachEnv(BabbleEnv):
 
     | sense | size | low | high | unit |
     | --- | --- | --- | --- | --- |
-    | `eye` | 2 | 0 | 1 | pan and tilt, share of range |
-    | `obstacle` | 2 | −π, −π/2 | π, π/2 | azimuth, elevation to the eye [rad]; lowest if none |
-    | `hand` | 2 | −π, −π/2 | π, π/2 | azimuth, elevation of the fingertip [rad] |
     | `arm` | 2 | 0 | 1 | shoulder and elbow, share of range |
+    | `eye` | 2 | 0 | 1 | pan and tilt, share of range |
+    | `hand` | 2 | −π, −π/2 | π, π/2 | azimuth, elevation of the fingertip [rad] |
+    | `obstacle` | 2 | −π, −π/2 | π, π/2 | azimuth, elevation to the eye [rad]; lowest if none |
     | `stretch` | 2 | −range | range | shoulder and elbow: equilibrium point minus angle [rad] |
     | `time` | 1 | 0 | 1 | share of the episode |
 
-    `"flat"` is the same in one Box(11,), in this order. `"goal"` is a Dict of `observation`
-    (flat), `achieved_goal` (fingertip) and `desired_goal` (target), (x, y) [m]. `"retina"` is
-    the senses and the eye's image, `retina_size` × `retina_size` × 3, uint8.
+    `"flat"` is the same in one Box(11,), in this order, which is that of Gymnasium's
+    `FlattenObservation`. `"goal"` is a Dict of `observation` (flat), `achieved_goal` (fingertip)
+    and `desired_goal` (target), (x, y) [m]. `"retina"` is the senses and the eye's image,
+    `retina_size` × `retina_size` × 3, uint8.
 
     ## Rewards
 

@@ -6,18 +6,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import gymnasium
-import numpy as np
 
 from gym_babble.agents import HebbBabbling
+from gym_babble.checks import check_seed, check_whole
 from gym_babble.errors import ConfigError
-from gym_babble.study.evaluation import Evaluation, evaluate
-from gym_babble.study.rates import OUTCOMES, paper_tally, t_interval, tally
+from gym_babble.study.evaluation import evaluate
+from gym_babble.study.rates import OUTCOMES, over_seeds, paper_tally, spread, tally
 from gym_babble.study.scenarios import scenarios
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from gym_babble.config import ConfigLike
+    from gym_babble.study.evaluation import Evaluation
 
 __all__ = ["CONTROLS", "TableOne", "table1"]
 
@@ -31,26 +30,26 @@ class TableOne:
 
     settings: dict[str, Any]
     """The arguments of `table1`."""
+    seeds: tuple[int, ...]
+    """The seeds."""
     tests: tuple[Evaluation, ...]
     """The tests of each seed."""
     legal_rates: tuple[float, ...]
     """Share of the babbled movements that were legal, for each seed."""
 
     def to_json(self) -> dict[str, Any]:
-        """Rates by seed and pooled, with Wilson intervals; means over seeds, with t intervals."""
+        """Rates of each seed, with Wilson intervals over its cases; means and ranges of seeds."""
         by_seed = [tally(test) for test in self.tests]
-        pooled = tally(sum(self.tests, start=Evaluation((), (), ())))
         return {
             **self.settings,
             "paper": {"legal_rate": 0.2, **paper_tally()},
             "by_seed": [
                 {"seed": seed, "legal_rate": legal, **rates}
-                for seed, (legal, rates) in enumerate(zip(self.legal_rates, by_seed, strict=True))
+                for seed, legal, rates in zip(self.seeds, self.legal_rates, by_seed, strict=True)
             ],
-            "pooled": {"legal_rate": float(np.mean(self.legal_rates)), **pooled},
             "over_seeds": {
-                "legal_rate": _spread(self.legal_rates),
-                **{name: _spread([rates[name]["rate"] for rates in by_seed]) for name in OUTCOMES},
+                "legal_rate": spread(self.legal_rates),
+                **over_seeds(by_seed, OUTCOMES),
             },
         }
 
@@ -58,20 +57,15 @@ class TableOne:
         """A header, and a line of rates for each seed."""
         header = ["seed", "cases", "legal_rate", *OUTCOMES]
         lines: list[list[Any]] = [
-            [seed, len(test.outcomes), legal, *(test.rate(name) for name in OUTCOMES)]
-            for seed, (test, legal) in enumerate(zip(self.tests, self.legal_rates, strict=True))
+            [seed, len(test), legal, *(test.rate(name) for name in OUTCOMES)]
+            for seed, test, legal in zip(self.seeds, self.tests, self.legal_rates, strict=True)
         ]
         return "".join(",".join(map(str, line)) + "\n" for line in (header, *lines))
 
 
-def _spread(values: Sequence[float]) -> dict[str, float | None]:
-    interval = t_interval(values)
-    low, high = (None, None) if interval is None else np.clip(interval, 0.0, 1.0).tolist()
-    return {"mean": float(np.mean(values)), "low": low, "high": high}
-
-
 def table1(
     *,
+    seed: int = 0,
     seeds: int = 5,
     cases: int = 1_000,
     config: ConfigLike = "paper",
@@ -84,7 +78,8 @@ def table1(
     """Trains and tests an agent for each seed.
 
     Args:
-        seeds: Number of seeds: 0, 1, ...
+        seed: First seed.
+        seeds: Number of seeds: `seed`, `seed` + 1, ...
         cases: Tests of each seed.
         config: Body and task.
         variant: Variant of the agent, "paper" or "conjunctive".
@@ -98,13 +93,16 @@ def table1(
     """
     if control not in CONTROLS:
         raise ConfigError(f"control = {control!r} is not one of {', '.join(CONTROLS)}")
+    check_seed(seed)
+    check_whole("seeds", seeds, 1, 10_000, "seeds")
     env_id = CONTROLS[control]
     tests, legal_rates = [], []
-    for seed in range(seeds):
+    all_seeds = tuple(range(seed, seed + seeds))
+    for one in all_seeds:
         env = gymnasium.make(env_id, config=config)
-        agent = HebbBabbling(env, variant, seed=seed, quasi_static=quasi_static)
+        agent = HebbBabbling(env, variant, seed=one, quasi_static=quasi_static)
         agent.learn(movements, progress_bar=progress_bar)
-        drawn = scenarios("table1", cases, seed, config=config)
+        drawn = scenarios("table1", cases, one, config=config)
         bar = progress_bar and control != "pattern"  # Pattern tests take a moment.
         tests.append(evaluate(agent, env_id, drawn, config=config, progress_bar=bar))
         legal_rates.append(agent.learnt_rate)
@@ -115,4 +113,4 @@ def table1(
         "quasi_static": quasi_static,
         "movements": movements,
     }
-    return TableOne(settings, tuple(tests), tuple(legal_rates))
+    return TableOne(settings, all_seeds, tuple(tests), tuple(legal_rates))

@@ -9,11 +9,12 @@ import gymnasium
 import numpy as np
 
 from gym_babble.agents import HebbBabbling
-from gym_babble.checks import check_whole, processors
+from gym_babble.checks import check_seed, check_whole, processors
 from gym_babble.config import Config, config_json
 from gym_babble.errors import ConfigError
 from gym_babble.paper.holding import hold_rates
-from gym_babble.study.evaluation import Evaluation, evaluate, wilson
+from gym_babble.study.evaluation import evaluate
+from gym_babble.study.rates import counted, counts, over_seeds
 from gym_babble.study.scenarios import scenarios
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from gym_babble.agents import Experiences
     from gym_babble.agents.base import Agent
     from gym_babble.config import ConfigLike
+    from gym_babble.study.evaluation import Evaluation
     from gym_babble.study.scenarios import GraspProtocol, GraspScenario
 
 __all__ = [
@@ -91,7 +93,7 @@ class SizeResult:
             },
             "tests": {
                 protocol: {
-                    "pooled": _tally(sum(tests.values(), start=Evaluation((), (), ()))),
+                    "over_seeds": over_seeds([_tally(test) for test in tests.values()], FACTS),
                     "by_seed": [{"seed": seed, **_tally(test)} for seed, test in tests.items()],
                 }
                 for protocol, tests in self.tests.items()
@@ -114,7 +116,7 @@ class TableTwo:
     """Share of babbles in which the hand kept the object."""
 
     def to_json(self) -> dict[str, Any]:
-        """Rates with Wilson intervals and learned equilibrium points, with the paper's."""
+        """Rates and learned equilibrium points, with the paper's."""
         return {
             **self.settings,
             "kept_rate": self.kept_rate,
@@ -125,12 +127,12 @@ class TableTwo:
 
     def to_csv(self) -> str:
         """A header, and a line of rates for each diameter, protocol and seed."""
-        lines: list[list[Any]] = [["diameter_m", "protocol", "seed", "tests", *FACTS]]
+        lines: list[list[Any]] = [["diameter_m", "protocol", "seed", "cases", *FACTS]]
         for size in self.sizes:
             for protocol, tests in size.tests.items():
                 for seed, test in tests.items():
-                    rates = [float(np.mean(test.facts[name])) for name in FACTS]
-                    lines.append([size.diameter, protocol, seed, len(test.outcomes), *rates])
+                    rates = [test.rate(name) for name in FACTS]
+                    lines.append([size.diameter, protocol, seed, len(test), *rates])
         return "".join(",".join(map(str, line)) + "\n" for line in lines)
 
 
@@ -141,19 +143,14 @@ def _statistic(
     return float(measure(values)) if len(values) else None
 
 
-def _tally(result: Evaluation) -> dict[str, Any]:
-    """Number of tests; for each fact its count, rate and 95 % Wilson interval."""
-    n = len(result.outcomes)
-    counted = {}
-    for name in FACTS:
-        count = int(np.sum(result.facts[name]))
-        low, high = wilson(count, n)
-        counted[name] = {"count": count, "rate": count / n, "low": low, "high": high}
-    return {"tests": n, **counted}
+def _tally(test: Evaluation) -> dict[str, Any]:
+    """Number of cases; for each fact its count, rate and 95 % Wilson interval."""
+    return counted(counts(test, FACTS))
 
 
 def table2(
     *,
+    seed: int = 0,
     seeds: int = 5,
     cases: int = 1_000,
     config: ConfigLike = "paper",
@@ -164,7 +161,8 @@ def table2(
     """Trains and tests an agent for each seed, and tests the reflex.
 
     Args:
-        seeds: Number of seeds: 0, 1, ... of babbling and of the random cases.
+        seed: First seed of babbling and of the random cases.
+        seeds: Number of seeds: `seed`, `seed` + 1, ...
         cases: Random cases in each region, for each seed; half of each size on average.
         config: Body and task.
         babbles: Babbles to learn from.
@@ -174,30 +172,40 @@ def table2(
     Raises:
         ConfigError: A number out of bounds, or a config without a list of diameters.
     """
+    check_seed(seed)
     check_whole("seeds", seeds, 1, 10_000, "seeds")
     check_whole("cases", cases, 1, 1_000_000, "cases")
     check_whole("babbles", babbles, 1, 10_000_000, "babbles")
     sizes = {d: _Collected() for d in table_diameters(config)}
     kept, made = 0, 0
-    for seed in range(seeds):
-        agent = HebbBabbling(gymnasium.make("BabbleGrasp-v0", config=config), seed=seed)
+    for one in range(seed, seed + seeds):
+        agent = HebbBabbling(gymnasium.make("BabbleGrasp-v0", config=config), seed=one)
         agent.learn(babbles, progress_bar=progress_bar)
         kept, made = kept + agent.learnt, made + agent.babbled
         experiences = agent.experiences()
         for diameter, collected in sizes.items():
             collected.add_babbles(experiences, diameter)
         for protocol in PROTOCOLS:
-            n = None if protocol == "table2" else cases
-            drawn = scenarios(protocol, n, seed, config=config)
+            drawn = (
+                scenarios(protocol, config=config)
+                if protocol == "table2"
+                else scenarios(protocol, cases, one, config=config)
+            )
             for diameter, collected in sizes.items():
                 chosen = [case for case in drawn if case["diameter"] == diameter]
                 if chosen:
                     test = _play(agent, chosen, config, progress_bar=progress_bar)
-                    collected.tests[protocol][seed] = test
+                    collected.tests[protocol][one] = test
                 if protocol == "table2":
                     collected.hands.append(recalled_hands(agent, chosen, config))
     hold = hold_rates(hold_trials, config, progress_bar=progress_bar) if hold_trials else []
-    settings = {"config": str(config), "seeds": seeds, "cases": cases, "babbles": babbles}
+    settings = {
+        "config": str(config),
+        "seed": seed,
+        "seeds": seeds,
+        "cases": cases,
+        "babbles": babbles,
+    }
     return TableTwo(
         settings,
         tuple(collected.result(diameter) for diameter, collected in sizes.items()),

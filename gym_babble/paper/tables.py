@@ -5,7 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from gym_babble.study.rates import OUTCOMES, share
-from gym_babble.study.tables import format_interval, plain_table, rate_cells, rates_table
+from gym_babble.study.tables import (
+    INTERVALS,
+    format_interval,
+    plain_table,
+    rate_cells,
+    rates_table,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -16,21 +22,22 @@ __all__ = ["table1_table", "table2_tables"]
 
 
 def table1_table(document: dict[str, Any], title: str) -> Table:
-    """`TableOne.to_json()` as a table: the paper, each seed, all together, and over seeds."""
+    """`TableOne.to_json()` as a table: the paper, each seed, and means and ranges of seeds."""
     table = rates_table(title, "legal")
     table.add_row("the paper", *rate_cells(document["paper"]), "≈.20")
     for seed in document["by_seed"]:
         table.add_row(f"seed {seed['seed']}", *rate_cells(seed), share(seed["legal_rate"]))
-    pooled = document["pooled"]
-    table.add_row("[bold]pooled[/]", *rate_cells(pooled), share(pooled["legal_rate"]))
-    spreads = document["over_seeds"]
-    if spreads["success"]["low"] is not None:
-        cells = [
-            f"{share(spreads[name]['mean'])}\n{format_interval(spreads[name])}"
-            for name in (*OUTCOMES, "legal_rate")
-        ]
-        table.add_row("over seeds\n[dim]t interval[/]", *cells)
+    means = document["over_seeds"]
+    if means["seeds"] > 1:
+        cells = [_mean_cell(means[name]) for name in (*OUTCOMES, "legal_rate")]
+        table.add_row("[bold]mean[/]\n[dim]range of seeds[/]", *cells)
+    table.caption = "Of each seed: 95 % Wilson intervals over its cases."
     return table
+
+
+def _mean_cell(spread: dict[str, float]) -> str:
+    """A mean of seeds, and their range."""
+    return f"{share(spread['mean'])}\n[dim]{share(spread['min'])}–{share(spread['max'])}[/]"
 
 
 def table2_tables(document: dict[str, Any]) -> list[Table]:
@@ -57,15 +64,30 @@ def table2_tables(document: dict[str, Any]) -> list[Table]:
     )
     for name, size in zip(names, sizes, strict=True):
         for protocol, found in size["tests"].items():
-            pooled = found["pooled"]
-            cells = [
-                f"{share(pooled[fact]['rate'])}\n{format_interval(pooled[fact])}"
-                for fact in ("reach", "palm_reach", "held")
-            ]
             known = printed.get(name) if protocol == "table2" else None
             theirs = [share(known["reach"]), share(known["held"])] if known else ["", ""]
-            rates.add_row(f"{name}, {protocol}", f"{pooled['tests']:,}", *cells, *theirs)
+            for title, cases, cells in _fact_rows(found):
+                rates.add_row(title or f"{name}, {protocol}", cases, *cells, *theirs)
+                theirs = ["", ""]
+    rates.caption = INTERVALS
     return [hands, rates, *([_hold_table(document["hold"])] if document["hold"] else [])]
+
+
+def _fact_rows(found: dict[str, Any]) -> list[tuple[str, str, list[str]]]:
+    """Title, cases and cells of a protocol's rows: means of several seeds, then each seed."""
+    facts, by_seed = ("reach", "palm_reach", "held"), found["by_seed"]
+    each = [
+        (
+            f"  seed {one['seed']}" if len(by_seed) > 1 else "",
+            f"{one['cases']:,}",
+            [f"{share(one[fact]['rate'])}\n{format_interval(one[fact])}" for fact in facts],
+        )
+        for one in by_seed
+    ]
+    if len(by_seed) == 1:
+        return each
+    cells = [_mean_cell(found["over_seeds"][fact]) for fact in facts]
+    return [("", f"{len(by_seed)} seeds", cells), *each]
 
 
 def _hold_table(rates: Sequence[dict[str, Any]]) -> Table:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
+from gym_babble.files import write_files
 from gym_babble.report.page import page_of
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ __all__ = ["write_report"]
 def write_report(
     comparison: Comparison, folder: Path, command: str, other: str | None = None
 ) -> list[Path]:
-    """Writes index.html and results.json into a folder.
+    """Writes index.html and results.json into a folder, both or neither.
 
     Args:
         comparison: The results to report.
@@ -31,9 +32,8 @@ def write_report(
 
     Raises:
         MissingExtraError: matplotlib is not installed.
+        OSError: The files cannot be written; an earlier report is whole.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    results, page = folder / "results.json", folder / "index.html"
-    results.write_text(json.dumps(comparison.to_json(), indent=2) + "\n", encoding="utf-8")
-    page.write_text(page_of(comparison, command, other), encoding="utf-8")
-    return [page, results]
+    results = json.dumps(comparison.to_json(), indent=2) + "\n"
+    page = page_of(comparison, command, other)
+    return write_files(folder, {"index.html": page, "results.json": results})

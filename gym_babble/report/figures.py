@@ -76,7 +76,8 @@ def weights_section(comparison: Comparison) -> str:
     return "<h2>Weights (Fig. 5)</h2>\n" + figure_html(
         svg_source(fig5.draw(sets)),
         "Weights from input neurons to the output map. The neurons form two compact sets: with one "
-        "the movement curves left, with the other right. The mean of one set correlates "
+        "the movement curves left, with the other right. Of each, the neuron most like its set's "
+        "mean, and the mean. The mean of one set correlates "
         f"{share(sets.mirror_correlation)} with the mirrored mean of the other.",
     )
 

@@ -10,7 +10,6 @@ import numpy as np
 from gym_babble.agents.loading import LoadedAgent
 from gym_babble.report.html import figure_html, png_source
 from gym_babble.study.comparison import TrainedResult
-from gym_babble.study.scenarios import scenarios
 from gym_babble.viz.film import contact_sheet, png, record
 
 if TYPE_CHECKING:
@@ -24,45 +23,49 @@ __all__ = ["grasp_section", "movement_section"]
 
 
 def _filmed(
-    comparison: Comparison, worth: Callable[[Any], float]
-) -> tuple[TrainedResult, Any, Film, bytes] | None:
+    comparison: Comparison, worth: Callable[[Any], float], why: str
+) -> tuple[str, Film, bytes] | None:
     """A film of the first trained agent's success that shows most.
 
     Args:
         comparison: The comparison.
         worth: Rates how much a case shows.
+        why: Says in words which case has the highest worth.
 
     Returns:
-        The result, the case, the film, and the eye's view before; None without trained agents.
+        A paragraph on what is shown and how it was chosen, the film, and the eye's view before;
+        None without trained agents.
     """
     played = [result for result in comparison.results if isinstance(result, TrainedResult)]
     if not played:
         return None
     result = played[0]
     trained, config = result.trained[0], comparison.settings.config
-    cases = scenarios(comparison.task.protocol, comparison.settings.cases, config=config)
-    solved = [
-        case
-        for case, outcome in zip(cases, result.tests[0].outcomes, strict=True)
-        if outcome == "success"
-    ]
-    case = max(solved or cases, key=worth)
+    test = result.tests[0]
+    outcomes = zip(test.cases, test.outcomes, strict=True)
+    solved = [case for case, outcome in outcomes if outcome == "success"]
+    case: Any = max(solved or test.cases, key=worth)
     loaded = LoadedAgent(trained.agent, trained.env_id, config, trained.env_kwargs)
     film = record(loaded, options={"scenario": case}, size=600)
     eye = record(loaded, options={"scenario": case}, camera="eye", size=630).frames[0]
-    return result, case, film, png(eye)
+    tests = f"{len(test.cases):,} tests"
+    among = f"{len(solved):,} successes in {tests}" if solved else f"{tests} without a success"
+    title, outcome = escape(result.contender.title), film.outcome.replace("_", " ")
+    said = (
+        f"<p>{title}, seed 0, on case {case['index']}: {outcome}. Chosen from {among}: {why}.</p>\n"
+    )
+    return said, film, png(eye)
 
 
 def movement_section(comparison: Comparison) -> str:
     """A movement of reaching."""
-    filmed = _filmed(comparison, _visibility)
+    filmed = _filmed(comparison, _visibility, "a long way in the middle of the picture")
     if filmed is None:
         return ""
-    result, case, film, eye = filmed
+    said, film, eye = filmed
     near = [frame[60:400, 80:420] for frame in film.frames]  # The arm stays in the middle.
     return (
-        f"<h2>A movement</h2>\n<p>{escape(result.contender.title)} on case {case['index']}: "
-        f"{film.outcome.replace('_', ' ')}.</p>\n"
+        f"<h2>A movement</h2>\n{said}"
         '<div class="photos">'
         + figure_html(
             png_source(eye),
@@ -82,13 +85,12 @@ def _visibility(case: Scenario) -> float:
 
 def grasp_section(comparison: Comparison) -> str:
     """A grasp."""
-    filmed = _filmed(comparison, _size)
+    filmed = _filmed(comparison, _size, "the first of the biggest objects")
     if filmed is None:
         return ""
-    result, case, film, eye = filmed
+    said, film, eye = filmed
     return (
-        f"<h2>A grasp</h2>\n<p>{escape(result.contender.title)} on case {case['index']}: "
-        f"{film.outcome.replace('_', ' ')}.</p>\n"
+        f"<h2>A grasp</h2>\n{said}"
         '<div class="photos">'
         + figure_html(
             png_source(eye),

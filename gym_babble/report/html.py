@@ -10,33 +10,35 @@ from gym_babble.study.rates import share
 from gym_babble.viz.style import svg
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from matplotlib.figure import Figure
 
     from gym_babble.study.tasks import Task
 
-__all__ = ["figure_html", "png_source", "rates_row", "svg_source"]
+__all__ = ["figure_html", "named", "png_source", "rates_row", "svg_source"]
 
 
-def rates_row(
-    title: str, detail: str, rates: dict[str, Any], task: Task, cells: Sequence[str]
-) -> str:
-    """A row with a contender's name, a bar of its outcomes, its rates, and further cells."""
+def rates_row(name: str, rates: Mapping[str, Any], task: Task, cells: Sequence[str] = ()) -> str:
+    """A row with a name in HTML, a bar of outcomes, rates with intervals, and further cells."""
     bar = "".join(
-        f'<span class="{name}" style="width:{100 * rates[name]["rate"]:.1f}%"></span>'
-        for name in task.outcomes
+        f'<span class="{outcome}" style="width:{100 * rates[outcome]["rate"]:.1f}%"></span>'
+        for outcome in task.outcomes
     )
     shares = "".join(
         f"<td>{share(rates[name]['rate'])}"
         f"<small>{share(rates[name]['low'])}–{share(rates[name]['high'])}</small></td>"
-        for name in (*task.outcomes, *task.facts)
+        for name in task.rates
     )
     return (
-        f"<tr><td>{escape(title)}<small>{escape(detail)}</small></td>"
-        f'<td><div class="bar">{bar}</div></td>{shares}'
+        f'<tr><td>{name}</td><td><div class="bar">{bar}</div></td>{shares}'
         f"{''.join(f'<td>{cell}</td>' for cell in cells)}</tr>\n"
     )
+
+
+def named(title: str, detail: str) -> str:
+    """A name with a detail below it."""
+    return f"{escape(title)}<small>{escape(detail)}</small>"
 
 
 def figure_html(source: str, caption: str) -> str:

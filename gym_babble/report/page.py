@@ -69,7 +69,7 @@ def _lead(comparison: Comparison) -> str:
     task = comparison.task
     best = [
         f"{escape(result.contender.title)} ({escape(result.contender.detail)}) "
-        f"{share(result.rates['success']['rate'])}"
+        f"{share(result.rates[0].rates['success']['rate'])}"
         for result in comparison.results
         if result.mean("trials")
     ]
@@ -83,7 +83,7 @@ def _provenance(comparison: Comparison, command: str) -> str:
     settings, protocol = comparison.settings, comparison.task.protocol
     facts = {
         "config": comparison.to_json()["config"],
-        "seeds": ", ".join(map(str, range(settings.seeds))),
+        "seeds": ", ".join(map(str, settings.all_seeds)),
         "cases": f"protocol {protocol}, split test, {settings.cases:,} for each seed",
         "processors": str(processors()),
         "time": f"{comparison.seconds:.0f} s in total",

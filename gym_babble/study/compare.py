@@ -2,16 +2,15 @@
 
 Each agent learns in its own environment. All agents are tested on the same cases: Table I for
 reaching, objects on the palm's side for grasping. With several seeds, each seed has its own
-learners and its own 1,000 (`cases`) tests.
+learners and its own 1,000 (`cases`) tests, and the table shows means and ranges of the seeds.
 """
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
+from gym_babble.checks import check_seed
 from gym_babble.errors import ConfigError, MissingExtraError, StudyError
 from gym_babble.study.comparison import Comparison, Result, StoredResult, TrainedResult
 from gym_babble.study.contenders import CONTENDERS, Contender, Settings, own_contender
@@ -19,6 +18,7 @@ from gym_babble.study.evaluation import evaluate
 from gym_babble.study.learning import CurvePoint, Learning
 from gym_babble.study.rates import counted, tally
 from gym_babble.study.scenarios import scenarios
+from gym_babble.study.stored import STUDIES, Run, Study
 from gym_babble.study.tasks import TASKS, Task
 
 if TYPE_CHECKING:
@@ -26,10 +26,7 @@ if TYPE_CHECKING:
 
     from gym_babble.study.scenarios import GraspScenario, Scenario
 
-__all__ = ["STUDIES", "compare"]
-
-STUDIES = Path(__file__).with_name("results")
-"""Folder of the stored studies, written by examples/ppo_study.py."""
+__all__ = ["compare"]
 
 
 def compare(
@@ -57,10 +54,11 @@ def compare(
     contenders = _chosen(agents, task)
     if min(settings.seeds, settings.movements, settings.babbles) < 1:
         raise ConfigError("seeds, movements and babbles must be at least 1")
+    check_seed(settings.seed)
     began = perf_counter()
     cases = [
         scenarios(task.protocol, settings.cases, seed, config=settings.config, threads=None)
-        for seed in range(settings.seeds)
+        for seed in settings.all_seeds
     ]
     results: list[Result] = []
     skipped: dict[str, str] = {}
@@ -96,7 +94,7 @@ def _run(
 ) -> Result:
     if contender.train is None:
         return _stored(contender, task, settings)
-    trained = tuple(contender.train(settings, seed) for seed in range(settings.seeds))
+    trained = tuple(contender.train(settings, seed) for seed in settings.all_seeds)
     bar = settings.progress_bar and contender.slow_test
     tests = []
     for one, its_cases in zip(trained, cases, strict=True):
@@ -111,31 +109,37 @@ def _run(
             )
         tests.append(test)
     rates = tuple(tally(test, task) for test in tests)
-    return TrainedResult(contender, task, trained[0].env_id, trained, rates, tuple(tests))
+    return TrainedResult(
+        contender, task, trained[0].env_id, settings.all_seeds, trained, rates, tuple(tests)
+    )
 
 
 def _stored(contender: Contender, task: Task, settings: Settings) -> StoredResult:
     """The stored study of a task; it has its own seeds and cases."""
-    study = json.loads((STUDIES / f"ppo_{task.name}.json").read_text(encoding="utf-8"))
-    if settings.config != study["config"]:
-        raise StudyError(f"the stored study is of config {study['config']}")
-    names = (*task.outcomes, *task.facts)
+    study = Study.read(STUDIES / f"ppo_{task.name}.json")
+    if settings.config != study.config:
+        raise StudyError(f"the stored study is of config {study.config}")
     return StoredResult(
         contender,
         task,
-        env_id=study["presets"][study["runs"][0]["preset"]]["env_id"],
-        trained=tuple(_learning(run) for run in study["runs"]),
-        rates_by_seed=tuple(
-            counted({name: run[name] for name in names}, run["cases"]) for run in study["runs"]
-        ),
-        provenance={name: value for name, value in study.items() if name != "runs"},
+        env_id=study.presets[study.runs[0].preset]["env_id"],
+        seeds=tuple(run.seed for run in study.runs),
+        trained=tuple(_learning(run) for run in study.runs),
+        rates_by_seed=tuple(_rates(run) for run in study.runs),
+        study=study,
     )
 
 
-def _learning(run: dict[str, Any]) -> Learning:
+def _rates(run: Run) -> dict[str, Any]:
+    """A run's test in the form of `tally`."""
+    split = {size: counted(part) for size, part in run.by_size.items()}
+    return {**counted(run.counts), **({"by_size": split} if split else {})}
+
+
+def _learning(run: Run) -> Learning:
     return Learning(
-        trials=run["movements"],
-        control_steps=run["control_steps"],
-        seconds=run["seconds"],
-        curve=tuple(CurvePoint(*point) for point in run["curve"]),
+        trials=run.movements,
+        control_steps=run.control_steps,
+        seconds=run.seconds,
+        curve=tuple(CurvePoint(int(steps), *rest) for steps, *rest in run.curve),
     )

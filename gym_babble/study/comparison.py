@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from gym_babble._core import __version__
 from gym_babble.config import Config, config_json
-from gym_babble.study.rates import counted, paper_tally, share
-from gym_babble.study.tables import plain_table, rate_cells, rate_heads
+from gym_babble.study.rates import over_seeds, paper_tally, share, sizes_of
+from gym_babble.study.tables import INTERVALS, plain_table, rate_cells, rate_heads, rate_rows
 from gym_babble.study.tasks import TASKS, Task
 
 if TYPE_CHECKING:
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from gym_babble.study.contenders import Contender, Settings
     from gym_babble.study.evaluation import Evaluation
     from gym_babble.study.learning import Learning, Trained
+    from gym_babble.study.stored import Study
+    from gym_babble.study.tables import RateRow
 
 __all__ = ["Comparison", "Result", "StoredResult", "TrainedResult"]
 
@@ -29,17 +31,17 @@ class Result:
     contender: Contender
     task: Task
     env_id: str
+    seeds: tuple[int, ...]
+    """The seeds."""
     trained: tuple[Learning, ...]
     """Learning of each seed."""
     rates_by_seed: tuple[dict[str, Any], ...]
     """The `tally` of each seed's tests."""
 
     @property
-    def rates(self) -> dict[str, Any]:
-        """The `tally` of all tests together."""
-        names = (*self.task.outcomes, *self.task.facts)
-        counts = {name: sum(rates[name]["count"] for rates in self.rates_by_seed) for name in names}
-        return counted(counts, sum(rates["cases"] for rates in self.rates_by_seed))
+    def rates(self) -> list[RateRow]:
+        """The rows of rates: all cases, each size of the objects, each of several seeds."""
+        return rate_rows(self.rates_by_seed, self.seeds, self.task)
 
     @property
     def accepted_rate(self) -> float | None:
@@ -60,8 +62,11 @@ class Result:
             "detail": self.contender.detail,
             "env_id": self.env_id,
             f"{accepted}_rate": self.accepted_rate,
-            "test": self.rates,
-            "test_by_seed": list(self.rates_by_seed),
+            "test": self._over_seeds(),
+            "test_by_seed": [
+                {"seed": seed, **rates}
+                for seed, rates in zip(self.seeds, self.rates_by_seed, strict=True)
+            ],
             "training_by_seed": [
                 {
                     trials: trained.trials,
@@ -73,6 +78,15 @@ class Result:
                 for trained in self.trained
             ],
         }
+
+    def _over_seeds(self) -> dict[str, Any]:
+        """Means and ranges over the seeds, of all cases and of each size."""
+        names = self.task.rates
+        split = {
+            size: over_seeds(of_size, names)
+            for size, of_size in sizes_of(self.rates_by_seed).items()
+        }
+        return {**over_seeds(self.rates_by_seed, names), **({"by_size": split} if split else {})}
 
 
 @dataclass(frozen=True)
@@ -88,8 +102,8 @@ class TrainedResult(Result):
 class StoredResult(Result):
     """A result of an earlier study that the package contains."""
 
-    provenance: dict[str, Any]
-    """The study's command, config and presets."""
+    study: Study
+    """The study."""
 
     @property
     def note(self) -> str:
@@ -97,12 +111,14 @@ class StoredResult(Result):
         cases = " + ".join(f"{rates['cases']:,}" for rates in self.rates_by_seed)
         return (
             f"{self.contender.title}, {self.contender.detail}: from a stored study on {cases} "
-            f"cases, `{self.provenance['command']}`"
+            f"cases, `{self.study.command}`"
         )
 
     def to_json(self) -> dict[str, Any]:
         """The result as JSON types."""
-        return {**super().to_json(), "stored": self.provenance}
+        about = {name: value for name, value in vars(self.study).items() if name != "runs"}
+        runs = [{"versions": run.versions, "machine": run.machine} for run in self.study.runs]
+        return {**super().to_json(), "stored": {**about, "runs": runs}}
 
 
 @dataclass(frozen=True)
@@ -157,10 +173,11 @@ class Comparison:
 
     def table(self) -> Table:
         """The table for a terminal of 80 characters."""
-        task, n = self.task, self.settings.cases * self.settings.seeds
+        task, settings = self.task, self.settings
         trials = f"{task.trials}\n[dim]{task.accepted}[/]"
+        seeds = f"{settings.seeds} seeds of " if settings.seeds > 1 else ""
         table = plain_table(
-            f"{task.title}: {n:,} {task.cases}, 95 % Wilson intervals",
+            f"{task.title}: {seeds}{settings.cases:,} {task.cases}",
             ["agent", *rate_heads(task, "\n"), trials, "steps\n[dim]10⁶[/]", "clock\n[dim]s[/]"],
             padding=0,
         )
@@ -168,19 +185,22 @@ class Comparison:
             paper = "[bold]the paper[/]\n[dim]Table I[/]"
             table.add_row(paper, *rate_cells(paper_tally()), "20,000\n[dim]≈.20[/]")
         for result in self.results:
-            table.add_row(*_row(result))
-        table.caption = "\n".join(self.notes).replace("[", "\\[") or None
+            for row in _rows(result):
+                table.add_row(*row)
+        table.caption = "\n".join([INTERVALS, *self.notes]).replace("[", "\\[")
         return table
 
 
-def _row(result: Result) -> list[str]:
+def _rows(result: Result) -> list[list[str]]:
+    """The rows of a contender; only the first tells what it has learnt from."""
+    first, *rest = result.rates
     name = f"[bold]{result.contender.title}[/]\n[dim]{result.contender.detail}[/]"
-    cells = [name, *rate_cells(result.rates, result.task)]
-    if not result.mean("trials"):
-        return cells
-    trials = f"{result.mean('trials'):,.0f}"
-    if result.accepted_rate is not None:
-        accepted = f"{result.mean('accepted'):,.0f}"
-        trials = f"{accepted}\n[dim]{share(result.accepted_rate)}[/]"
-    steps = f"{result.mean('control_steps') / 1e6:.1f}"
-    return [*cells, trials, steps, f"{result.mean('seconds'):.0f}"]
+    rows = [[name, *rate_cells(first.rates, result.task)]]
+    if result.mean("trials"):
+        trials = f"{result.mean('trials'):,.0f}"
+        if result.accepted_rate is not None:
+            accepted = f"{result.mean('accepted'):,.0f}"
+            trials = f"{accepted}\n[dim]{share(result.accepted_rate)}[/]"
+        steps = f"{result.mean('control_steps') / 1e6:.1f}"
+        rows[0] += [trials, steps, f"{result.mean('seconds'):.0f}"]
+    return rows + [[f"  {row.title}", *rate_cells(row.rates, result.task)] for row in rest]

@@ -37,8 +37,10 @@ class Settings:
     """Task, "reach" or "grasp"."""
     config: ConfigLike = "paper"
     """Body and task."""
+    seed: int = 0
+    """First seed of learning and tests."""
     seeds: int = 1
-    """Number of seeds of learning and tests: 0, 1, ..."""
+    """Number of seeds: `seed`, `seed` + 1, ..."""
     cases: int = 1_000
     """Tests for each seed."""
     movements: int = 20_000
@@ -49,6 +51,11 @@ class Settings:
     """Steps that PPO learns from; the preset's by default."""
     progress_bar: bool = False
     """Show progress bars."""
+
+    @property
+    def all_seeds(self) -> tuple[int, ...]:
+        """All seeds."""
+        return tuple(range(self.seed, self.seed + self.seeds))
 
 
 @dataclass(frozen=True)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import difflib
 import math
-from collections import Counter
 from dataclasses import dataclass, field
+from itertools import chain, compress
 from typing import TYPE_CHECKING, Any
 
 import gymnasium
@@ -18,7 +19,7 @@ from gym_babble.study.scenarios import scenarios
 from gym_babble.study.tasks import task_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from gym_babble.agents.base import Agent
     from gym_babble.config import ConfigLike
@@ -29,11 +30,16 @@ __all__ = ["Evaluation", "evaluate", "wilson"]
 ENVS = 250
 """Environments of a batch."""
 
+MANY_SIZES = 5
+"""More sizes than these are split in two halves."""
+
 
 @dataclass(frozen=True)
 class Evaluation:
     """The results of an evaluation, case by case."""
 
+    cases: tuple[Mapping[str, Any], ...]
+    """The cases."""
     outcomes: tuple[str, ...]
     """Outcome of each case."""
     steps: tuple[int, ...]
@@ -42,28 +48,86 @@ class Evaluation:
     """Sum of rewards of each case."""
     facts: dict[str, tuple[bool, ...]] = field(default_factory=dict)
     """Facts at the end of each case, with the names in `info`."""
+    possible: tuple[str, ...] = ()
+    """All outcomes that an episode can have."""
 
-    def count(self, outcome: str) -> int:
-        """Number of cases with this outcome."""
-        return Counter(self.outcomes)[outcome]
+    def __len__(self) -> int:
+        """Number of cases."""
+        return len(self.outcomes)
 
-    def rate(self, outcome: str) -> float:
-        """Share of cases with this outcome."""
-        return self.count(outcome) / len(self.outcomes)
+    def count(self, name: str) -> int:
+        """Number of cases with this outcome, or in which this fact is true.
 
-    def interval(self, outcome: str) -> tuple[float, float]:
-        """95 % Wilson interval of the rate."""
-        return wilson(self.count(outcome), len(self.outcomes))
+        Raises:
+            ConfigError: There is no such outcome or fact.
+        """
+        if name in self.facts:
+            return sum(self.facts[name])
+        if name in self.possible:
+            return self.outcomes.count(name)
+        known = (*self.possible, *self.facts)
+        near = difflib.get_close_matches(str(name), known, 1)
+        meant = f"; did you mean {near[0]!r}?" if near else ""
+        raise ConfigError(f"{name!r} is not one of {', '.join(known)}{meant}")
 
-    def __add__(self, other: Evaluation) -> Evaluation:
-        """The cases of both, as one evaluation."""
-        names = {**self.facts, **other.facts}
+    def rate(self, name: str) -> float:
+        """Share of cases with this outcome, or in which this fact is true.
+
+        Raises:
+            ConfigError: There is no such outcome or fact.
+        """
+        return self.count(name) / len(self)
+
+    def interval(self, name: str) -> tuple[float, float]:
+        """95 % Wilson interval of the rate: what these cases say about all such cases.
+
+        It says nothing about other seeds of learning.
+
+        Raises:
+            ConfigError: There is no such outcome or fact.
+        """
+        return wilson(self.count(name), len(self))
+
+    def by_size(self) -> dict[str, Evaluation]:
+        """The cases of each size of the object, small ones first; empty if all have one size.
+
+        More than five sizes make two halves. In reaching there are no sizes.
+        """
+        sizes = np.array([case.get("diameter", 0.0) for case in self.cases])
+        each = np.unique(sizes).tolist()
+        if len(each) < 2:
+            return {}
+        if len(each) <= MANY_SIZES:
+            return {f"{100 * size:g} cm": self._where(sizes == size) for size in each}
+        low, middle, high = each[0], (each[0] + each[-1]) / 2, each[-1]
+        return {
+            f"{100 * low:.2g}–{100 * middle:.2g} cm": self._where(sizes <= middle),
+            f"{100 * middle:.2g}–{100 * high:.2g} cm": self._where(sizes > middle),
+        }
+
+    def _where(self, chosen: Sequence[bool]) -> Evaluation:
+        """Some of the cases."""
         return Evaluation(
-            self.outcomes + other.outcomes,
-            self.steps + other.steps,
-            self.returns + other.returns,
-            {name: self.facts.get(name, ()) + other.facts.get(name, ()) for name in names},
+            cases=tuple(compress(self.cases, chosen)),
+            outcomes=tuple(compress(self.outcomes, chosen)),
+            steps=tuple(compress(self.steps, chosen)),
+            returns=tuple(compress(self.returns, chosen)),
+            facts={name: tuple(compress(held, chosen)) for name, held in self.facts.items()},
+            possible=self.possible,
         )
+
+
+def _joined(parts: Sequence[Evaluation]) -> Evaluation:
+    """The cases of one test, played in parts."""
+    chained = chain.from_iterable
+    return Evaluation(
+        cases=tuple(chained(part.cases for part in parts)),
+        outcomes=tuple(chained(part.outcomes for part in parts)),
+        steps=tuple(chained(part.steps for part in parts)),
+        returns=tuple(chained(part.returns for part in parts)),
+        facts={name: tuple(chained(part.facts[name] for part in parts)) for name in parts[0].facts},
+        possible=parts[0].possible,
+    )
 
 
 def wilson(count: int, n: int, z: float = 1.959964) -> tuple[float, float]:
@@ -113,13 +177,13 @@ def evaluate(
     if not cases:
         raise ConfigError("cases is empty: it must have at least one")
     groups = [cases[i : i + ENVS] for i in range(0, len(cases), ENVS)]
-    result = Evaluation((), (), ())
+    parts = []
     sizes = (len(group) for group in groups)
     for i, _ in enumerate(track(sizes, "evaluating", total=len(cases), show=progress_bar)):
         envs = gymnasium.make_vec(env_id, num_envs=len(groups[i]), config=config, **env_kwargs)
-        result += _play(agent, envs, groups[i], deterministic=deterministic)
+        parts.append(_play(agent, envs, groups[i], deterministic=deterministic))
         envs.close()
-    return result
+    return _joined(parts)
 
 
 def _play(
@@ -134,8 +198,8 @@ def _play(
     running = np.ones(n, np.bool_)
     steps, returns = np.zeros(n, np.int64), np.zeros(n)
     outcomes = np.full(n, "running", object)
-    names = envs.get_attr("interface")[0].spec.facts
-    facts = {name: np.zeros(n, np.bool_) for name in names}
+    spec = envs.get_attr("interface")[0].spec
+    facts = {name: np.zeros(n, np.bool_) for name in spec.facts}
     while running.any():
         actions, state = predict(observation, state, starts, deterministic)
         observation, rewards, terminated, truncated, infos = envs.step(actions)
@@ -150,8 +214,10 @@ def _play(
         # Ended environments restart at their next step; their later steps are ignored.
         starts = ended
     return Evaluation(
+        tuple(cases),
         tuple(outcomes),
         tuple(steps.tolist()),
         tuple(returns.tolist()),
         {name: tuple(held.tolist()) for name, held in facts.items()},
+        tuple(name for name in spec.outcomes if name != "running"),
     )

@@ -1,72 +1,90 @@
-"""Counts and rates with intervals, in JSON's types."""
+"""Counts and rates with intervals, in JSON's types.
+
+The cases of one seed give a rate and its Wilson interval. Several seeds give a mean and a range:
+cases of different seeds are not pooled, because agents of different seeds differ more than that.
+"""
 
 from __future__ import annotations
 
-import math
+from statistics import fmean
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from gym_babble.study.evaluation import wilson
 from gym_babble.study.tasks import REACH
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from gym_babble.study.evaluation import Evaluation
     from gym_babble.study.tasks import Task
 
-__all__ = ["OUTCOMES", "counted", "paper_tally", "share", "t_interval", "tally"]
+__all__ = [
+    "OUTCOMES",
+    "counted",
+    "counts",
+    "over_seeds",
+    "paper_tally",
+    "share",
+    "sizes_of",
+    "spread",
+    "tally",
+]
 
 OUTCOMES = REACH.outcomes
 """The outcomes of reaching."""
 
-# 97.5 % points of Student's t for 1, 2, ... 9 degrees of freedom.
-T_QUANTILES = (12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646, 2.3060, 2.2622)
+
+def counts(result: Evaluation, names: Collection[str]) -> dict[str, int]:
+    """Number of cases, and how many have each outcome or fact."""
+    return {"cases": len(result), **{name: result.count(name) for name in names}}
+
+
+def counted(counts: Mapping[str, int]) -> dict[str, Any]:
+    """`counts` with rates: for each outcome and fact its count, rate and 95 % Wilson interval."""
+    n = counts["cases"]
+    rates = {name: _rate(count, n) for name, count in counts.items() if name != "cases"}
+    return {"cases": n, **rates}
 
 
 def tally(result: Evaluation, task: Task = REACH) -> dict[str, Any]:
-    """Number of cases; for each outcome and fact its count, rate and 95 % Wilson interval."""
-    counts = {name: result.count(name) for name in task.outcomes}
-    counts |= {name: sum(result.facts[name]) for name in task.facts}
-    return counted(counts, len(result.outcomes))
+    """Number of cases; for each outcome and fact its count, rate and 95 % Wilson interval.
+
+    Where objects have several sizes, `by_size` has the same for each size.
+    """
+    sizes = result.by_size()
+    split = {size: counted(counts(part, task.rates)) for size, part in sizes.items()}
+    return {**counted(counts(result, task.rates)), **({"by_size": split} if split else {})}
 
 
 def paper_tally() -> dict[str, Any]:
     """The paper's Table I in the form of `tally`."""
     assert REACH.paper is not None
-    return counted(REACH.paper, sum(REACH.paper.values()))
+    return counted({"cases": sum(REACH.paper.values()), **REACH.paper})
 
 
-def counted(counts: Mapping[str, int], n: int) -> dict[str, Any]:
-    """The counts of `n` cases in the form of `tally`."""
-    return {"cases": n, **{name: _rate(count, n) for name, count in counts.items()}}
+def over_seeds(tallies: Sequence[Mapping[str, Any]], names: Collection[str]) -> dict[str, Any]:
+    """Number of seeds; for each outcome and fact the mean of the seeds' rates, and their range."""
+    rates = {name: spread([one[name]["rate"] for one in tallies]) for name in names}
+    return {"seeds": len(tallies), **rates}
+
+
+def spread(values: Sequence[float]) -> dict[str, float]:
+    """Mean of the seeds' values, smallest and largest."""
+    return {"mean": fmean(values), "min": min(values), "max": max(values)}
+
+
+def sizes_of(tallies: Sequence[Mapping[str, Any]]) -> dict[str, list[dict[str, Any]]]:
+    """For each size of the objects its tallies, one for each seed that has such cases."""
+    sizes: dict[str, list[dict[str, Any]]] = {}
+    for one in tallies:
+        for size, part in one.get("by_size", {}).items():
+            sizes.setdefault(size, []).append(part)
+    return sizes
 
 
 def _rate(count: int, n: int) -> dict[str, Any]:
     low, high = wilson(count, n)
     return {"count": count, "rate": count / n, "low": low, "high": high}
-
-
-def t_interval(values: Sequence[float]) -> tuple[float, float] | None:
-    """95 % interval of the mean of independent values (Student's t); None for a single value."""
-    n = len(values)
-    if n < 2:
-        return None
-    mean, spread = float(np.mean(values)), float(np.std(values, ddof=1))
-    half = _t_quantile(n - 1) * spread / math.sqrt(n)
-    return mean - half, mean + half
-
-
-def _t_quantile(freedom: int) -> float:
-    """97.5 % point of Student's t: from the table, from 10 on by the Cornish-Fisher expansion."""
-    if freedom <= len(T_QUANTILES):
-        return T_QUANTILES[freedom - 1]
-    z = 1.959964
-    first = (z**3 + z) / 4
-    second = (5 * z**5 + 16 * z**3 + 3 * z) / 96
-    third = (3 * z**7 + 19 * z**5 + 17 * z**3 - 15 * z) / 384
-    return z + first / freedom + second / freedom**2 + third / freedom**3
 
 
 def share(rate: float) -> str:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from gym_babble.study.rates import share
+from gym_babble.study.rates import over_seeds, share, sizes_of
 from gym_babble.study.tasks import REACH
 
 if TYPE_CHECKING:
@@ -14,7 +14,54 @@ if TYPE_CHECKING:
 
     from gym_babble.study.tasks import Task
 
-__all__ = ["format_interval", "plain_table", "rate_cells", "rate_heads", "rates_table"]
+__all__ = [
+    "INTERVALS",
+    "RateRow",
+    "format_interval",
+    "plain_table",
+    "rate_cells",
+    "rate_heads",
+    "rate_rows",
+    "rates_table",
+]
+
+INTERVALS = (
+    "Below a rate of one seed: its 95 % Wilson interval over the cases. Below a mean of seeds: "
+    "smallest and largest seed."
+)
+"""Explains the second line of a rate."""
+
+
+class RateRow(NamedTuple):
+    """The rates of a row, and what they are of."""
+
+    title: str
+    """A size or a seed; empty for all together."""
+    rates: dict[str, dict[str, float]]
+    """For each outcome and fact `rate`, `low` and `high`."""
+
+
+def rate_rows(
+    tallies: Sequence[Mapping[str, Any]], seeds: Sequence[int], task: Task = REACH
+) -> list[RateRow]:
+    """The rows of tests: all cases, then each size of the objects, then each seed of several."""
+    rows = [RateRow("", _rates(tallies, task))]
+    rows += [RateRow(size, _rates(of_size, task)) for size, of_size in sizes_of(tallies).items()]
+    if len(tallies) > 1:
+        each = zip(seeds, tallies, strict=True)
+        rows += [RateRow(f"seed {seed}", _rates([one], task)) for seed, one in each]
+    return rows
+
+
+def _rates(tallies: Sequence[Mapping[str, Any]], task: Task) -> dict[str, dict[str, float]]:
+    """Rates and intervals of one seed, or means and ranges of several."""
+    if len(tallies) == 1:
+        return {name: tallies[0][name] for name in task.rates}
+    means = over_seeds(tallies, task.rates)
+    return {
+        name: {"rate": means[name]["mean"], "low": means[name]["min"], "high": means[name]["max"]}
+        for name in task.rates
+    }
 
 
 def rate_heads(task: Task = REACH, between: str = " ") -> list[str]:
@@ -23,8 +70,8 @@ def rate_heads(task: Task = REACH, between: str = " ") -> list[str]:
     return [*(name.replace("_", between) for name in task.outcomes), *touches]
 
 
-def rate_cells(rates: dict[str, Any], task: Task = REACH) -> list[str]:
-    """Cells of a `tally`: rate and interval for each outcome, and one cell for the facts."""
+def rate_cells(rates: Mapping[str, Any], task: Task = REACH) -> list[str]:
+    """Cells of a row: rate and interval for each outcome, and one cell for the facts."""
     cells = [
         f"{share(rates[name]['rate'])}\n{format_interval(rates[name])}" for name in task.outcomes
     ]

@@ -34,6 +34,11 @@ class Task:
     paper: dict[str, int] | None = None
     """The paper's counts of outcomes on such tests."""
 
+    @property
+    def rates(self) -> tuple[str, ...]:
+        """Names of all outcomes and facts."""
+        return (*self.outcomes, *self.facts)
+
 
 def _tests(task: str) -> dict[str, Any]:
     """The registry's first protocol of a task: the cases that results are reported on."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from io import BytesIO
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import gymnasium
@@ -11,10 +13,9 @@ import numpy as np
 
 from gym_babble.agents.base import predictor
 from gym_babble.errors import MissingExtraError
+from gym_babble.files import write_files
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from numpy.typing import NDArray
 
     from gym_babble.agents.loading import LoadedAgent
@@ -94,23 +95,23 @@ def save_film(film: Film, folder: Path, kind: str) -> list[Path]:
 
     Args:
         film: The film.
-        folder: Folder for the files; created if missing.
+        folder: Folder for the files; created if missing. Frames of an earlier, longer film are
+            removed.
         kind: "png" (one file for each frame), "gif" or "mp4".
 
     Raises:
         MissingExtraError: Pillow (extra `figures`) or moviepy (extra `video`) is not installed.
+        OSError: The files cannot be written; earlier ones are whole.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    sheet = folder / "sheet.png"
-    sheet.write_bytes(png(contact_sheet(film.frames)))
+    files = {"sheet.png": png(contact_sheet(film.frames))}
     if kind == "mp4":
-        return [sheet, _save_mp4(film, folder / "episode.mp4")]
-    if kind == "gif":
-        return [sheet, _save_gif(film, folder / "episode.gif")]
-    frames = [folder / f"frame{i:04d}.png" for i in range(len(film.frames))]
-    for path, frame in zip(frames, film.frames, strict=True):
-        path.write_bytes(png(frame))
-    return [sheet, *frames]
+        files["episode.mp4"] = _mp4(film)
+    elif kind == "gif":
+        files["episode.gif"] = _gif(film)
+    else:
+        files |= {f"frame{i:04d}.png": png(frame) for i, frame in enumerate(film.frames)}
+    earlier = {path.name for path in folder.glob("frame[0-9][0-9][0-9][0-9].png")}
+    return write_files(folder, files, stale=sorted(earlier - files.keys()))
 
 
 def png(picture: NDArray[np.uint8]) -> bytes:
@@ -124,22 +125,25 @@ def png(picture: NDArray[np.uint8]) -> bytes:
     return buffer.getvalue()
 
 
-def _save_gif(film: Film, path: Path) -> Path:
-    image = _pillow()
+def _gif(film: Film) -> bytes:
+    image, buffer = _pillow(), BytesIO()
     pictures = [image.fromarray(frame) for frame in film.frames]
+    duration = round(1000 / film.fps)
     pictures[0].save(
-        path, save_all=True, append_images=pictures[1:], duration=round(1000 / film.fps), loop=0
+        buffer, "GIF", save_all=True, append_images=pictures[1:], duration=duration, loop=0
     )
-    return path
+    return buffer.getvalue()
 
 
-def _save_mp4(film: Film, path: Path) -> Path:
+def _mp4(film: Film) -> bytes:
     try:
         from moviepy import ImageSequenceClip
     except ImportError as error:
         raise MissingExtraError("moviepy", "video") from error
-    ImageSequenceClip(film.frames, fps=film.fps).write_videofile(str(path), logger=None)
-    return path
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "episode.mp4"
+        ImageSequenceClip(film.frames, fps=film.fps).write_videofile(str(path), logger=None)
+        return path.read_bytes()
 
 
 def _pillow() -> Any:

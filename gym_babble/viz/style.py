@@ -7,6 +7,7 @@ from io import BytesIO
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from gym_babble.errors import ConfigError, MissingExtraError
+from gym_babble.files import write_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -107,4 +108,6 @@ def check_format(path: Path) -> None:
 def save(figure: Figure, path: Path) -> None:
     """Writes the figure; the file's ending chooses the format (png, svg, pdf ...)."""
     check_format(path)
-    figure.savefig(path, dpi=160, bbox_inches="tight")
+    buffer, kind = BytesIO(), path.suffix.removeprefix(".")
+    figure.savefig(buffer, format=kind, dpi=160, bbox_inches="tight")
+    write_file(path, buffer.getvalue())

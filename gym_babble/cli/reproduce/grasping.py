@@ -5,16 +5,16 @@ from typing import Annotated
 
 import typer
 
-from gym_babble.cli.arguments import AsJson, Babbles, ConfigName, Picture, Seed, Seeds
+from gym_babble.cli.arguments import AsJson, Babbles, ConfigName, FirstSeed, Picture, Seed, Seeds
 from gym_babble.cli.learning import learn_grasping
 from gym_babble.cli.output import (
-    check_folder_of,
     check_picture,
     name_files,
     print_json,
     print_results,
     write_table,
 )
+from gym_babble.files import check_folder
 from gym_babble.paper import fig7 as palm
 from gym_babble.paper import fig8 as weights
 from gym_babble.paper import sight as views
@@ -28,6 +28,7 @@ __all__ = ["fig7", "fig8", "sight", "table2"]
 
 def table2(
     *,
+    seed: FirstSeed = 0,
     seeds: Seeds = 5,
     cases: Annotated[
         int, typer.Option(min=2, help="Random cases in each region, for each seed.")
@@ -43,8 +44,9 @@ def table2(
     as_json: AsJson = False,
 ) -> None:
     """Table II: learned hands, and outcomes of reaching and grasping, beside the paper's."""
-    check_folder_of(folder)
+    check_folder(folder, "--out")
     table = rates.table2(
+        seed=seed,
         seeds=seeds,
         cases=cases,
         config=config,

@@ -9,6 +9,7 @@ from gym_babble.cli.arguments import (
     AsJson,
     Cases,
     ConfigName,
+    FirstSeed,
     Movements,
     Picture,
     QuasiStatic,
@@ -18,13 +19,13 @@ from gym_babble.cli.arguments import (
 )
 from gym_babble.cli.learning import learn_reaching
 from gym_babble.cli.output import (
-    check_folder_of,
     check_picture,
     name_files,
     print_json,
     print_results,
     write_table,
 )
+from gym_babble.files import check_folder
 from gym_babble.paper import fig2 as generators
 from gym_babble.paper import fig4 as movements_to_targets
 from gym_babble.paper import fig5 as weights
@@ -39,6 +40,7 @@ __all__ = ["fig2", "fig4", "fig5", "table1"]
 
 def table1(
     *,
+    seed: FirstSeed = 0,
     seeds: Seeds = 5,
     cases: Cases = 1_000,
     config: ConfigName = "paper",
@@ -54,8 +56,9 @@ def table1(
     as_json: AsJson = False,
 ) -> None:
     """Table I: outcomes of reaching, beside the paper's rates."""
-    check_folder_of(folder)
+    check_folder(folder, "--out")
     table = rates.table1(
+        seed=seed,
         seeds=seeds,
         cases=cases,
         config=config,
@@ -96,11 +99,11 @@ def fig4(
     halfway = movements_to_targets.trajectories(agent, cases, config)
     exchanged = movements_to_targets.trajectories(agent, exchanged_cases, config)
     missing = movements_to_targets.starts_without_case(config)
-    save(movements_to_targets.draw(halfway, exchanged, missing), file)
     for name, played in (("obstacle halfway", halfway), ("switched", exchanged)):
         reached = sum(movement.outcome == "success" for movement in played)
         print_results(f"{name}: {reached} of {len(played)} reach")
     print_results(f"{len(missing)} starts have no case")
+    save(movements_to_targets.draw(halfway, exchanged, missing), file)
     name_files([file])
 
 
@@ -113,9 +116,9 @@ def fig5(
     """Figure 5: the weights of two sets of input neurons."""
     check_picture(file)
     sets = weights.weight_sets(learn_reaching("paper", movements, seed, config))
-    save(weights.draw(sets), file)
     print_results(
         f"{sets.left.sum()} input neurons curve left, {sets.right.sum()} right; the mean of one "
         f"set correlates {share(sets.mirror_correlation)} with the mirrored mean of the other"
     )
+    save(weights.draw(sets), file)
     name_files([file])

@@ -124,11 +124,11 @@ impl Random {
     }
 }
 
-/// The first N numbers of a flat observation.
-pub(crate) fn percepts<const N: usize>(senses: &[f32]) -> Result<&[f32; N], AgentError> {
-    senses.first_chunk().ok_or_else(|| AgentError::Config {
+/// A flat observation, which has N numbers.
+pub(crate) fn observation<const N: usize>(senses: &[f32]) -> Result<&[f32; N], AgentError> {
+    senses.try_into().map_err(|_| AgentError::Config {
         field: "senses",
-        problem: format!("{} numbers, expected at least {N}", senses.len()),
+        problem: format!("{} numbers, expected {N}", senses.len()),
     })
 }
 

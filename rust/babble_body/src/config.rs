@@ -1,6 +1,6 @@
 //! Every number of the body, with its unit and source.
 //!
-//! Sources: \[P\] the paper, \[A\] derived, \[F\] fitted to the paper's tables, \[C\] a free choice.
+//! Sources: \[P\] the paper, \[A\] derived from it, \[F\] fitted to its tables, \[C\] our choice.
 
 use serde::{Deserialize, Serialize};
 
@@ -41,23 +41,23 @@ pub struct Hand {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Muscles {
-    /// Stiffness `K_P` \[N·m/rad\]; 50 \[P\].
+    /// Stiffness `K_P` \[N·m/rad\]; 50 \[P, unit C\].
     pub kp: f64,
-    /// Damping `K_D` \[N·m·s/rad\]; 40 \[P\]. The arm's time constant is `kd / kp` seconds.
+    /// Damping `K_D` \[N·m·s/rad\]; 40 \[P, unit C\]. The arm's time constant is `kd / kp` seconds.
     pub kd: f64,
     /// Torque of an action of 1 in torque control \[N·m\]; 50 \[C\]. At most 1000 `kd`, which is a speed of
     /// 1000 rad/s.
     pub torque_max: f64,
 }
 
-/// Whether the four fingers flex as one or each for itself.
+/// How the four fingers follow the one command they share, the paper's "virtual finger" \[P\].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Fingers {
-    /// One "virtual finger" of three joints that carries the four fingers \[P\].
+    /// One chain of three joints carries the four fingers \[C\].
     Virtual,
-    /// Twelve joints, which share the virtual finger's equilibrium point: the fingers envelop an
-    /// object one by one. Costs about three times as much.
+    /// Twelve joints: the fingers envelop an object one by one. A physics step costs 1.2 to 1.6 times
+    /// as much.
     Independent,
 }
 
@@ -66,7 +66,7 @@ pub enum Fingers {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Grip {
-    /// Whether the fingers flex as one; `virtual` \[P\].
+    /// Whether the fingers flex as one; `virtual` \[C\].
     pub fingers: Fingers,
     /// Where the thumb sits: along the forearm from the wrist, and towards the palm's side
     /// \[m\]; 0, 0.006 \[C\].
@@ -76,8 +76,9 @@ pub struct Grip {
     pub thumb_direction_deg: f64,
     /// Lowest and highest flexion of every joint of thumb and fingers \[deg\]; 0 and 90 \[C\].
     pub flexion_deg: [f64; 2],
-    /// Flexion that the enclosure reflex asks of thumb and fingers \[deg\]; 57 and 80 \[C\]. Less
-    /// holds small objects loosely; with rapier, more ejects them.
+    /// Flexion that the enclosure reflex asks of thumb and fingers \[deg\]; 57 and 80 \[C\]. That it asks
+    /// for angles is Sect. IV-A's; Sect. IV speaks of constant torques. Less holds small objects loosely;
+    /// with rapier, more ejects them.
     pub reflex_deg: [f64; 2],
     /// Muscles of shoulder and elbow; 200 and 200 \[P\], 200 N·m in torque control \[C\].
     pub arm_muscles: Muscles,

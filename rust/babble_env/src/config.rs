@@ -1,7 +1,7 @@
 //! Body and task in one document.
 //!
 //! A config is a profile (`paper` or `icub`) with any of its fields replaced. Unknown fields are
-//! refused. Sources of the numbers: \[P\] the paper, \[F\] fitted to its tables, \[C\] a free choice.
+//! refused. Sources of the numbers: \[P\] the paper, \[F\] fitted to its tables, \[C\] our choice.
 
 use std::path::Path;
 

@@ -25,7 +25,8 @@ pub struct Entry {
 /// Everything a face needs to build an environment's spaces and docs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Spec {
-    /// The senses, in the order of the flat observation.
+    /// The senses, in the order of the flat observation: that of their names, as Gymnasium flattens
+    /// a Dict.
     pub senses: Vec<Entry>,
     /// The two goals of the goal form; none where a task has no such form.
     pub goals: Vec<Entry>,

@@ -5,12 +5,12 @@ mod playing;
 use std::sync::Arc;
 
 use babble_body::robot::{MuscleCommand, MuscleCommands, World, towards};
-use babble_env::tasks::grasp::{GraspRequest, GraspState, Grip};
+use babble_env::tasks::grasp::{GraspRequest, GraspState, Grip, at};
 use babble_env::{Batch, Control, GraspOptions, GraspTask, Outcome};
 use nalgebra::Vector2;
 use playing::grasping::{
-    self, CONTROLS, HELD, IS_SUCCESS, PALM_REACH, REACH, TOUCH, asked, asking_for, before_the_palm,
-    grasp, grasp_with, obstacle, play, script, with_control,
+    CONTROLS, HELD, IS_SUCCESS, PALM_REACH, REACH, asked, asking_for, before_the_palm, grasp,
+    grasp_with, obstacle, play, script, with_control,
 };
 use playing::{Actions, ended, record};
 
@@ -292,7 +292,7 @@ fn a_step_is_ten_physics_steps() {
             assert_eq!((state.reach, state.palm_reach), (reach, palm_reach));
             for (i, force) in forces.into_iter().enumerate() {
                 let felt = (force / 10.0 / 20.0).min(1.0);
-                let shown = f64::from(shown.senses[TOUCH + i]);
+                let shown = f64::from(shown.senses[at::TOUCH + i]);
                 assert!((shown - felt).abs() < 1e-6, "{shown} {felt}");
             }
             if ended(&shown) {
@@ -451,29 +451,4 @@ fn recording_changes_nothing() {
         assert_eq!(moment.object, [object.x, object.y, object.z]);
         assert_eq!(moment.gaze, state(&plain).gaze);
     }
-}
-
-/// The senses stand in the flat observation where these tests look for them.
-#[test]
-fn senses_stand_where_the_tests_say() {
-    let task = grasp(GraspOptions::default());
-    let names: Vec<_> = grasping::bounds(&task)
-        .into_iter()
-        .map(|(name, ..)| name)
-        .collect();
-    for (at, name) in [
-        (grasping::EYE, "eye"),
-        (grasping::FOVEA, "fovea"),
-        (grasping::POSTURE, "arm"),
-        (grasping::POSTURE + 2, "hand"),
-        (grasping::STRETCH, "stretch"),
-        (TOUCH, "touch"),
-        (grasping::TIME, "time"),
-    ] {
-        assert!(
-            names[at] == name && (at == 0 || names[at - 1] != name),
-            "{name}"
-        );
-    }
-    assert_eq!(names.len(), grasping::TIME + 1);
 }

@@ -4,13 +4,12 @@ mod playing;
 
 use babble_body::visual;
 use babble_env::batch::Record;
-use babble_env::tasks::grasp::{FOVEA_NEURONS, GraspRequest, GraspState, Region, see};
+use babble_env::tasks::grasp::{FOVEA_NEURONS, GraspRequest, GraspState, Region, at, see};
 use babble_env::{Autoreset, Config, Control, GraspOptions, GraspTask};
 use babble_eye::{Gaze, Material, Primitive, Shape, foveal_shape, red_centroid};
 use nalgebra::{Matrix3, Vector3};
 use playing::grasping::{
-    CONTROLS, EYE, FOVEA, POSTURE, STRETCH, TIME, TOUCH, asked, before_the_palm, bounds, grasp,
-    grasp_with, obstacle, script, with_control,
+    CONTROLS, asked, before_the_palm, bounds, grasp, grasp_with, obstacle, script, with_control,
 };
 use playing::{Actions, ended, record, seeded};
 
@@ -74,13 +73,14 @@ fn stretch_leads_to_the_equilibrium_points() {
         for step in 1..=60 {
             env.step(&actions.draw()).unwrap();
             let (shown, state) = (record(&env), env.state(0).unwrap());
-            let share = std::array::from_fn(|i| f64::from(shown.senses[POSTURE + i]));
+            let joints = [at::ARM, at::ARM + 1, at::HAND, at::HAND + 1];
+            let share = joints.map(|at| f64::from(shown.senses[at]));
             let angles = task.robot.denormalised(share);
             let posture = task.robot.posture(&state.world);
             for i in 0..4 {
                 // A joint at its stop may be a hair beyond its range.
                 assert!((angles[i] - posture[i]).abs() < 1e-2, "{control} {i}");
-                let stretch = f64::from(shown.senses[STRETCH + i]);
+                let stretch = f64::from(shown.senses[at::STRETCH + i]);
                 let beyond = state.equilibrium[i] - posture[i] - stretch;
                 // Torque on a joint at its stop: cut to the bound.
                 let cut = stretch.abs() >= task.stretch_bounds()[i] - 1e-6;
@@ -94,7 +94,7 @@ fn stretch_leads_to_the_equilibrium_points() {
                 }
             }
             let elapsed = step as f32 / task.options.max_episode_steps as f32;
-            assert!((shown.senses[TIME] - elapsed).abs() < 1e-6);
+            assert!((shown.senses[at::TIME] - elapsed).abs() < 1e-6);
             if ended(&shown) {
                 break;
             }
@@ -115,7 +115,7 @@ fn stretch_is_bounded_by_ranges_or_torques() {
         } else {
             [255.0, 125.0, 90.0, 90.0].map(f32::to_radians)
         };
-        for (&(name, low, high), most) in bounds[STRETCH..].iter().zip(expected) {
+        for (&(name, low, high), most) in bounds[at::STRETCH..].iter().zip(expected) {
             assert!(
                 (high - most).abs() < 1e-6 && low == -high,
                 "{control} {name}: {high}"
@@ -137,7 +137,7 @@ fn touch_and_facts_agree() {
                 let action = script(&task, env.state(0).unwrap(), true);
                 env.step(&action).unwrap();
                 let (shown, state) = (record(&env), env.state(0).unwrap());
-                let touch = &shown.senses[TOUCH..TOUCH + 3];
+                let touch = &shown.senses[at::TOUCH..];
                 assert_eq!(state.palm_reach, before || touch[0] > 0.0);
                 assert!(state.reach || touch.iter().all(|&force| force == 0.0));
                 before = state.palm_reach;
@@ -181,9 +181,9 @@ fn fovea(task: &GraspTask, scene: &[Primitive], gaze: Gaze) -> Vec<f32> {
 fn assert_sees(task: &GraspTask, state: &GraspState, shown: &Record) {
     let scene = scene(task, state);
     let gaze = task.eye.normalised(state.gaze).map(|x| x as f32);
-    assert_eq!(shown.senses[EYE..FOVEA], gaze);
+    assert_eq!(shown.senses[at::EYE..at::FOVEA], gaze);
     let edges = fovea(task, &scene, state.gaze);
-    assert_eq!(shown.senses[FOVEA..POSTURE], edges);
+    assert_eq!(shown.senses[at::FOVEA..at::HAND], edges);
 }
 
 /// At the start the object is in the middle of the image, but where the arm hides it or the eye
@@ -209,7 +209,7 @@ fn the_eye_begins_on_the_object() {
                 };
                 let middle = task.eye.config().pixels as f64 / 2.0;
                 let off = (x - middle).abs().max((y - middle).abs());
-                let edges = &shown.senses[FOVEA..POSTURE];
+                let edges = &shown.senses[at::FOVEA..at::HAND];
                 if off < 0.6 {
                     centred += 1;
                     assert!(edges.iter().any(|&edge| edge > 0.1), "{body} {region} {i}");

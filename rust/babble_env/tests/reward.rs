@@ -4,8 +4,7 @@ mod playing;
 
 use babble_env::batch::Record;
 use babble_env::progress::IS_SUCCESS;
-use babble_env::tasks::reach::goal_reward;
-use babble_env::tasks::reach::{CaseRequest, ObstacleRequest};
+use babble_env::tasks::reach::{CaseRequest, ObstacleRequest, at, goal_reward};
 use babble_env::{Autoreset, Batch, Control, Outcome, ReachOptions, ReachTask, Reward, Task};
 use playing::{Actions, batch, control, goal};
 
@@ -233,7 +232,7 @@ fn time_limit_truncates() {
                 (shown.step.terminated, shown.step.truncated),
                 (false, step == 7)
             );
-            assert_eq!(shown.senses[10], f32::from(step) / 7.0);
+            assert_eq!(shown.senses[at::TIME], f32::from(step) / 7.0);
         }
         assert_eq!(record(&env).info.outcome, Outcome::Timeout);
     }

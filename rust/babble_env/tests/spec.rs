@@ -2,8 +2,10 @@
 
 mod playing;
 
+use babble_env::spec::Spec;
 use babble_env::task::{MAX_FACTS, MAX_TERMS};
-use babble_env::{Autoreset, Control, Task};
+use babble_env::tasks::{grasp, reach};
+use babble_env::{Autoreset, Control, GraspOptions, Task};
 use playing::{Actions, batch, control};
 
 /// Numbers of senses and actions, outcomes, facts and terms, in every control. Catches a sense or
@@ -28,4 +30,47 @@ fn tasks_keep_to_their_spec() {
             }
         }
     }
+}
+
+/// Names of the senses and where they begin in a flat observation.
+fn places(spec: &Spec) -> Vec<(&'static str, usize)> {
+    let mut end = 0;
+    let place = spec.senses.iter().map(|sense| {
+        let begin = end;
+        end += sense.labels.len();
+        (sense.name, begin)
+    });
+    place.collect()
+}
+
+/// Agents find a sense where the spec has it. Catches a sense that was moved in the spec alone.
+#[test]
+fn senses_stand_where_the_spec_says() {
+    use reach::at::{ARM, EYE, HAND, OBSTACLE, STRETCH, TIME};
+    let task = playing::task(control(Control::DeltaPosture));
+    let expected = [
+        ("arm", ARM),
+        ("eye", EYE),
+        ("hand", HAND),
+        ("obstacle", OBSTACLE),
+        ("stretch", STRETCH),
+        ("time", TIME),
+    ];
+    assert_eq!(places(&task.spec()), expected);
+}
+
+#[test]
+fn senses_of_grasping_stand_where_the_spec_says() {
+    use grasp::at::{ARM, EYE, FOVEA, HAND, STRETCH, TIME, TOUCH};
+    let task = playing::grasping::grasp(GraspOptions::default());
+    let expected = [
+        ("arm", ARM),
+        ("eye", EYE),
+        ("fovea", FOVEA),
+        ("hand", HAND),
+        ("stretch", STRETCH),
+        ("time", TIME),
+        ("touch", TOUCH),
+    ];
+    assert_eq!(places(&task.spec()), expected);
 }

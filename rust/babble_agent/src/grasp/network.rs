@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use babble_brain::{Association, MapConfig, PopulationMap};
 use babble_env::GraspTask;
-use babble_env::tasks::grasp::FOVEA_NEURONS;
+use babble_env::tasks::grasp::{FOVEA_NEURONS, SENSES, at};
 use serde::{Deserialize, Serialize};
 
 use super::babbling::Experience;
 use super::policy::{ChooseGrasp, GraspPolicy, Sight};
 use crate::error::AgentError;
 use crate::network::{Activities, Network, Recall};
-use crate::policy::{Grasp, Policy, percepts};
+use crate::policy::{Grasp, Policy, observation};
 use crate::rule::Rule;
 
 /// Numbers of the maps and the learning rule.
@@ -173,8 +173,9 @@ impl Network for GraspNetwork {
 impl GraspNetwork {
     /// Eye and fovea of a flat observation.
     fn split(senses: &[f32]) -> Result<([f32; 2], &[f32]), AgentError> {
-        let [e0, e1, fovea @ ..] = percepts::<{ 2 + FOVEA_NEURONS }>(senses)?;
-        Ok(([*e0, *e1], fovea))
+        let senses: &[f32; SENSES] = observation(senses)?;
+        let eye = [senses[at::EYE], senses[at::EYE + 1]];
+        Ok((eye, &senses[at::FOVEA..at::HAND]))
     }
 
     /// How much further than recalled the hand closes on contact \[deg\].

@@ -3,17 +3,14 @@
 use std::fmt;
 use std::sync::Arc;
 
-use babble_env::tasks::grasp::FOVEA_NEURONS;
+use babble_env::tasks::grasp::{SENSES, at};
 use babble_env::{Control, Executor, GraspTask, Task};
 
 use crate::error::AgentError;
 use crate::policy::{Grasp, Plan, Policy, Random};
 
-/// Where the senses stand in a flat observation: eye, fovea, arm and hand, stretch, touch.
-const FOVEA: usize = 2;
-const POSTURE: usize = FOVEA + FOVEA_NEURONS;
-const STRETCH: usize = POSTURE + 4;
-const TOUCH: usize = STRETCH + 4;
+/// Where shoulder, elbow, thumb and finger stand in a flat observation.
+const POSTURE: [usize; 4] = [at::ARM, at::ARM + 1, at::HAND, at::HAND + 1];
 
 /// What an agent sees at the beginning of an episode.
 #[derive(Debug, Clone, Copy)]
@@ -87,21 +84,19 @@ impl<C: ChooseGrasp> GraspPolicy<C> {
 
     /// The grasp for each flat observation of `senses`.
     fn choose(&self, senses: &[f32], executor: &mut Executor) -> Result<Vec<Grasp>, AgentError> {
-        let width = self.task.senses_len();
-        let choose = |senses: &[f32]| {
+        let (all, _) = senses.as_chunks::<SENSES>();
+        let choose = |senses: &[f32; SENSES]| {
             let sight = Sight {
-                eye: [senses[0], senses[1]],
-                fovea: &senses[FOVEA..POSTURE],
-                posture: std::array::from_fn(|i| senses[POSTURE + i]),
+                eye: [senses[at::EYE], senses[at::EYE + 1]],
+                fovea: &senses[at::FOVEA..at::HAND],
+                posture: POSTURE.map(|at| senses[at]),
             };
             self.choice.choose(&self.task, &sight)
         };
-        if senses.len() == width {
-            return Ok(vec![choose(senses)?]);
+        if let [one] = all {
+            return Ok(vec![choose(one)?]);
         }
-        executor.map(0..senses.len() / width, |i| {
-            choose(&senses[i * width..][..width])
-        })
+        executor.map(0..all.len(), |i| choose(&all[i]))
     }
 
     /// The action of a posture \[rad\] that the equilibrium points are to take.
@@ -112,8 +107,8 @@ impl<C: ChooseGrasp> GraspPolicy<C> {
                 2.0 * (wanted[i] - low) / (high - low) - 1.0
             } else {
                 // The equilibrium point is angle plus stretch.
-                let angle = low + f64::from(senses[POSTURE + i]) * (high - low);
-                (wanted[i] - (angle + f64::from(senses[STRETCH + i]))) / unit
+                let angle = low + f64::from(senses[POSTURE[i]]) * (high - low);
+                (wanted[i] - (angle + f64::from(senses[at::STRETCH + i]))) / unit
             };
             action[i] = asked.clamp(-1.0, 1.0) as f32;
         }
@@ -122,7 +117,7 @@ impl<C: ChooseGrasp> GraspPolicy<C> {
 
 impl<C: ChooseGrasp> Policy for GraspPolicy<C> {
     fn senses_len(&self) -> usize {
-        self.task.senses_len()
+        SENSES
     }
 
     fn action_len(&self) -> usize {
@@ -143,7 +138,7 @@ impl<C: ChooseGrasp> Policy for GraspPolicy<C> {
         let Plan::Grasp(grasp) = plan else {
             return action.fill(0.0);
         };
-        grasp.touched |= senses[TOUCH..TOUCH + 3].iter().any(|&force| force > 0.0);
+        grasp.touched |= senses[at::TOUCH..].iter().any(|&force| force > 0.0);
         let mut wanted = grasp.posture;
         if !grasp.touched {
             let ranges = self.task.robot.ranges();

@@ -6,14 +6,14 @@ use std::sync::Arc;
 
 use babble_brain::{Association, ConjunctiveMap, MapConfig, PopulationMap};
 use babble_env::ReachTask;
-use babble_env::tasks::reach::SENSES;
+use babble_env::tasks::reach::{SENSES, at};
 use serde::{Deserialize, Serialize};
 
 use super::babbling::Experience;
 use super::policy::{ChooseMovement, ReachPolicy};
 use crate::error::AgentError;
 use crate::network::{Activities, Network, Recall};
-use crate::policy::{Policy, percepts};
+use crate::policy::{Policy, observation};
 use crate::rule::Rule;
 
 /// Which input map and readout are used.
@@ -171,18 +171,18 @@ impl Network for ReachNetwork {
     }
 
     fn recall_maps(&self, senses: &[f32]) -> Result<Vec<Recall>, AgentError> {
-        let [e0, e1, o0, o1] = *percepts(senses)?;
+        let (eye, obstacle) = percepts(observation(senses)?);
         Ok(vec![Recall {
             name: "movement",
-            activity: self.recall([e0, e1], [o0, o1])?,
+            activity: self.recall(eye, obstacle)?,
             side: self.config.output_neurons,
         }])
     }
 
     /// Parameters (b1, b2) of the movement.
     fn decide_from(&self, senses: &[f32]) -> Result<Vec<f64>, AgentError> {
-        let [e0, e1, o0, o1] = *percepts(senses)?;
-        Ok(self.decide([e0, e1], [o0, o1])?.to_vec())
+        let (eye, obstacle) = percepts(observation(senses)?);
+        Ok(self.decide(eye, obstacle)?.to_vec())
     }
 
     fn policy(&self, task: Arc<ReachTask>) -> Result<Box<dyn Policy + '_>, AgentError> {
@@ -248,9 +248,15 @@ impl ReachNetwork {
 
 impl ChooseMovement for &ReachNetwork {
     fn choose(&self, _task: &ReachTask, senses: &[f32; SENSES]) -> Result<[f64; 2], AgentError> {
-        let [e0, e1, o0, o1, ..] = *senses;
-        self.decide([e0, e1], [o0, o1])
+        let (eye, obstacle) = percepts(senses);
+        self.decide(eye, obstacle)
     }
+}
+
+/// Eye and obstacle of a flat observation.
+fn percepts(senses: &[f32; SENSES]) -> ([f32; 2], [f32; 2]) {
+    let pair = |at: usize| [senses[at], senses[at + 1]];
+    (pair(at::EYE), pair(at::OBSTACLE))
 }
 
 impl Input {

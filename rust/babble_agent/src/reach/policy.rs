@@ -3,16 +3,12 @@
 use std::fmt;
 use std::sync::Arc;
 
-use babble_env::tasks::reach::SENSES;
+use babble_env::tasks::reach::{SENSES, at};
 use babble_env::{Control, EnvError, Executor, ReachTask};
 
 use super::reference::{case_from_senses, oracle, plan, scripted};
 use crate::error::AgentError;
 use crate::policy::{Plan, Policy, Random};
-
-/// Where the senses of the arm's angles and of its muscles stand in a flat observation.
-const ARM: usize = 6;
-const STRETCH: usize = 8;
 
 /// How an agent chooses a movement.
 pub trait ChooseMovement: fmt::Debug + Send + Sync {
@@ -160,8 +156,8 @@ impl<C> ReachPolicy<C> {
         let (arm, unit) = (&self.task.arm, self.task.config.reach.delta_posture_deg);
         let width = arm.upper_limit[i] - arm.lower[i];
         // The equilibrium point is angle plus stretch.
-        let wanted = f64::from(share - senses[ARM + i]) * width;
-        let change = wanted - f64::from(senses[STRETCH + i]);
+        let wanted = f64::from(share - senses[at::ARM + i]) * width;
+        let change = wanted - f64::from(senses[at::STRETCH + i]);
         (change / unit.to_radians()).clamp(-1.0, 1.0) as f32
     }
 }

@@ -1,7 +1,7 @@
 //! Choices of a movement that need no learning, and how a movement is played in other controls.
 
-use babble_env::tasks::reach::SENSES;
 use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
+use babble_env::tasks::reach::{SENSES, at};
 use babble_env::{EnvError, Outcome, ReachCase, ReachTask};
 
 /// Values of b1 that the oracle tries: 0.01, 0.02, … 0.99.
@@ -20,19 +20,19 @@ pub fn case_from_senses(task: &ReachTask, senses: &[f32; SENSES]) -> Result<Reac
         what,
         problem: "the gaze does not meet the plane".to_owned(),
     };
-    let gaze = task.eye.from_normalised(pair(0));
+    let gaze = task.eye.from_normalised(pair(at::EYE));
     let target = task
         .eye
         .target_in_plane(gaze, 0.0)
         .ok_or_else(|| nowhere("target"))?;
-    let start = task.arm.denormalised(pair(6));
+    let start = task.arm.denormalised(pair(at::ARM));
     let absent = ReachTask::obstacle_angles(&task.eye.camera(gaze), None).map(|x| x as f32);
-    let obstacle = if senses[2..4] == absent {
+    let obstacle = if senses[at::OBSTACLE..at::STRETCH] == absent {
         None
     } else {
         let centre = task
             .eye
-            .point_in_plane(gaze, pair(2), 0.0)
+            .point_in_plane(gaze, pair(at::OBSTACLE), 0.0)
             .ok_or_else(|| nowhere("obstacle"))?;
         Some(babble_env::tasks::reach::case::obstacle_at(task, centre))
     };

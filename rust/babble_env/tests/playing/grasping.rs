@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use babble_body::Obstacle;
-use babble_env::tasks::grasp::{FOVEA_NEURONS, GraspRequest, GraspState};
+use babble_env::tasks::grasp::{GraspRequest, GraspState};
 use babble_env::{
     Autoreset, Batch, Config, Control, GraspOptions, GraspTask, Outcome, Reward, Task,
 };
@@ -14,14 +14,6 @@ use super::{record, seeded};
 /// The controls that grasping has.
 pub(crate) const CONTROLS: [Control; 3] =
     [Control::DeltaPosture, Control::Posture, Control::Torque];
-
-/// Where the senses begin in the flat observation.
-pub(crate) const EYE: usize = 0;
-pub(crate) const FOVEA: usize = 2;
-pub(crate) const POSTURE: usize = FOVEA + FOVEA_NEURONS;
-pub(crate) const STRETCH: usize = POSTURE + 4;
-pub(crate) const TOUCH: usize = STRETCH + 4;
-pub(crate) const TIME: usize = TOUCH + 3;
 
 /// The facts in their order.
 pub(crate) const IS_SUCCESS: usize = 0;

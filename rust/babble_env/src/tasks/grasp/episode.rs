@@ -5,7 +5,7 @@ use babble_body::robot::{MuscleCommand, MuscleCommands, Posture, Touch, towards}
 use super::case::{GraspCase, GraspRequest};
 use super::enclosure::{Contacts, Enclosure, Grip};
 use super::sight::{self, FOVEA_NEURONS};
-use super::state::{GraspState, Moment, setup};
+use super::state::{GraspState, Moment, at, setup};
 use super::task::GraspTask;
 use crate::config::Config;
 use crate::episode::clipped;
@@ -99,24 +99,26 @@ pub(super) fn observe(
     edges: &[f32; FOVEA_NEURONS],
     out: &mut [f32],
 ) {
-    let (eye, out) = out.split_at_mut(2);
     let gaze = task.eye.normalised(state.gaze);
-    eye.copy_from_slice(&gaze.map(|x| x as f32));
-    let (fovea, out) = out.split_at_mut(FOVEA_NEURONS);
-    fovea.copy_from_slice(edges);
+    out[at::EYE..at::FOVEA].copy_from_slice(&gaze.map(|x| x as f32));
+    out[at::FOVEA..at::HAND].copy_from_slice(edges);
     let posture = task.robot.posture(&state.world);
     let shares = task.robot.normalised(posture);
     let stretch = task.stretch_bounds();
     let most = task.config.grasp.touch_max_n;
     let limit = f64::from(task.options.max_episode_steps);
-    for i in 0..4 {
-        out[i] = shares[i].clamp(0.0, 1.0) as f32;
-        out[4 + i] = (state.equilibrium[i] - posture[i]).clamp(-stretch[i], stretch[i]) as f32;
+    for (i, at) in [at::ARM, at::ARM + 1, at::HAND, at::HAND + 1]
+        .into_iter()
+        .enumerate()
+    {
+        out[at] = shares[i].clamp(0.0, 1.0) as f32;
+        out[at::STRETCH + i] =
+            (state.equilibrium[i] - posture[i]).clamp(-stretch[i], stretch[i]) as f32;
     }
-    for (out, force) in out[8..11].iter_mut().zip(state.touch) {
+    out[at::TIME] = (f64::from(state.progress.steps) / limit).min(1.0) as f32;
+    for (out, force) in out[at::TOUCH..].iter_mut().zip(state.touch) {
         *out = (force / most).min(1.0) as f32;
     }
-    out[11] = (f64::from(state.progress.steps) / limit).min(1.0) as f32;
 }
 
 /// The state at the beginning of an episode; the eye has not turned yet.

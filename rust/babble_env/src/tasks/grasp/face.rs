@@ -11,7 +11,7 @@ use super::entry::ENTRY;
 use super::episode::{self, Potential, goal_reward};
 use super::options::GraspOptions;
 use super::sight::FOVEA_NEURONS;
-use super::state::GraspState;
+use super::state::{GraspState, SENSES};
 use super::task::GraspTask;
 use super::{check, picture, protocol, spec};
 use crate::case::{CasePart, CaseValues};
@@ -46,7 +46,7 @@ impl Task for GraspTask {
     }
 
     fn senses_len(&self) -> usize {
-        FOVEA_NEURONS + 14
+        SENSES
     }
 
     fn spec(&self) -> Spec {

@@ -24,5 +24,5 @@ pub use episode::{Potential, goal_reward};
 pub use in_hand::InHand;
 pub use options::{GraspOptions, Region};
 pub use sight::{FOVEA_NEURONS, see};
-pub use state::{FACTS, GraspState};
+pub use state::{FACTS, GraspState, SENSES, at};
 pub use task::GraspTask;

@@ -51,6 +51,7 @@ fn senses(task: &GraspTask) -> Vec<Entry> {
     let range = || "share of range".to_owned();
     let stretch = task.stretch_bounds();
     vec![
+        share("arm", vec!["shoulder", "elbow"], range(), "joint angles"),
         share(
             "eye",
             vec!["pan", "tilt"],
@@ -63,7 +64,6 @@ fn senses(task: &GraspTask) -> Vec<Entry> {
             format!("{FOVEA_BLOCKS} × {FOVEA_BLOCKS}, row by row"),
             "edges in the middle of the eye's image: what the object is",
         ),
-        share("arm", vec!["shoulder", "elbow"], range(), "joint angles"),
         share(
             "hand",
             vec!["thumb", "finger"],
@@ -79,16 +79,16 @@ fn senses(task: &GraspTask) -> Vec<Entry> {
             description: "equilibrium point minus joint angle: the muscles' state",
         },
         share(
-            "touch",
-            vec!["palm", "thumb", "fingers"],
-            format!("share of {} N", task.config.grasp.touch_max_n),
-            "normal force on the object, mean over the last control step",
-        ),
-        share(
             "time",
             vec!["elapsed"],
             "share of episode".to_owned(),
             "control steps since the reset over the time limit",
+        ),
+        share(
+            "touch",
+            vec!["palm", "thumb", "fingers"],
+            format!("share of {} N", task.config.grasp.touch_max_n),
+            "normal force on the object, mean over the last control step",
         ),
     ]
 }

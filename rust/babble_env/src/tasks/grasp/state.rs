@@ -6,8 +6,32 @@ use serde::{Deserialize, Serialize};
 
 use super::case::{GraspCase, GraspRequest};
 use super::enclosure::Enclosure;
+use super::sight::FOVEA_NEURONS;
 use super::task::GraspTask;
 use crate::progress::{Lifecycle, Progress, SUCCESS_FACTS};
+
+/// Where each sense stands in a flat observation: by name, as Gymnasium flattens a Dict.
+pub mod at {
+    use super::FOVEA_NEURONS;
+
+    /// Shoulder and elbow.
+    pub const ARM: usize = 0;
+    /// Pan and tilt.
+    pub const EYE: usize = 2;
+    /// Edges, row by row.
+    pub const FOVEA: usize = 4;
+    /// Thumb and virtual finger.
+    pub const HAND: usize = FOVEA + FOVEA_NEURONS;
+    /// Shoulder, elbow, thumb and finger.
+    pub const STRETCH: usize = HAND + 2;
+    /// Share of the episode.
+    pub const TIME: usize = STRETCH + 4;
+    /// Palm, thumb and fingers.
+    pub const TOUCH: usize = TIME + 1;
+}
+
+/// Numbers in a flat observation.
+pub const SENSES: usize = at::TOUCH + 3;
 
 /// What is true or false of an episode.
 pub const FACTS: [&str; 5] = [

@@ -6,7 +6,7 @@ use babble_eye::{Gaze, Pinhole};
 use super::case::ReachCase;
 use super::movement::{Fidelity, MovementPath};
 use super::request::CaseRequest;
-use super::state::ReachState;
+use super::state::{ReachState, at};
 use super::task::ReachTask;
 use crate::config::Config;
 use crate::episode::clipped;
@@ -32,19 +32,21 @@ pub struct Drawn {
 #[derive(Debug, Clone)]
 pub struct Sight {
     camera: Pinhole,
-    /// Senses `eye` and `obstacle`.
-    senses: [f32; 4],
+    /// The sense `eye`.
+    eye: [f32; 2],
+    /// The sense `obstacle`.
+    obstacle: [f32; 2],
 }
 
 impl Sight {
     pub(super) fn new(task: &ReachTask, state: &ReachState) -> Self {
         let (gaze, obstacle) = (state.gaze, state.case.obstacle.as_ref());
         let camera = task.eye.camera(gaze);
-        let eye = task.eye.normalised(gaze);
         let angles = ReachTask::obstacle_angles(&camera, obstacle);
         Self {
             camera,
-            senses: [eye[0], eye[1], angles[0], angles[1]].map(|x| x as f32),
+            eye: task.eye.normalised(gaze).map(|x| x as f32),
+            obstacle: angles.map(|x| x as f32),
         }
     }
 }
@@ -124,14 +126,15 @@ pub(super) fn observe(task: &ReachTask, state: &ReachState, sight: &Sight, out: 
     let tip = task.arm.fingertip(state.arm.q);
     let hand = ReachTask::angles(&sight.camera, tip);
     let arm = task.arm.normalised(state.arm.q);
-    out[..4].copy_from_slice(&sight.senses);
+    let limit = f64::from(task.options.max_episode_steps);
     for i in 0..2 {
-        out[4 + i] = hand[i] as f32;
-        out[6 + i] = arm[i] as f32;
-        out[8 + i] = (state.equilibrium[i] - state.arm.q[i]) as f32;
+        out[at::ARM + i] = arm[i] as f32;
+        out[at::EYE + i] = sight.eye[i];
+        out[at::HAND + i] = hand[i] as f32;
+        out[at::OBSTACLE + i] = sight.obstacle[i];
+        out[at::STRETCH + i] = (state.equilibrium[i] - state.arm.q[i]) as f32;
     }
-    out[10] = (f64::from(state.progress.steps) / f64::from(task.options.max_episode_steps)).min(1.0)
-        as f32;
+    out[at::TIME] = (f64::from(state.progress.steps) / limit).min(1.0) as f32;
 }
 
 /// Positions of fingertip and target \[m\].

@@ -22,5 +22,5 @@ pub use episode::{Drawn, Sight, goal_reward};
 pub use movement::{Movement, MovementPath};
 pub use options::{MAX_EPISODE_STEPS, ReachOptions};
 pub use request::{CaseRequest, ObstacleRequest};
-pub use state::{ReachState, SENSES};
+pub use state::{ReachState, SENSES, at};
 pub use task::ReachTask;

@@ -17,7 +17,7 @@ const MAX_TRIES: u32 = 100_000;
 const MAX_TRIES_AROUND: u32 = 1_000;
 impl ReachCase {
     /// A random geometry: target uniform in joint space, start in a uniform direction at a uniform
-    /// distance from it (\[C\], paper-model item 16).
+    /// distance from it \[C\].
     ///
     /// # Errors
     /// [`EnvError::NoLegalCase`] when the config leaves no room for one.

@@ -52,18 +52,18 @@ fn senses(task: &ReachTask) -> Vec<Entry> {
         };
     vec![
         entry(
+            "arm",
+            ["shoulder", "elbow"],
+            unit_square(),
+            "share of range",
+            "joint angles",
+        ),
+        entry(
             "eye",
             ["pan", "tilt"],
             unit_square(),
             "share of range",
             "gaze, fixed on the target: where the target is",
-        ),
-        entry(
-            "obstacle",
-            ["azimuth", "elevation"],
-            angles(),
-            "rad",
-            "angles of the obstacle's axis in the camera frame; lowest when there is none",
         ),
         entry(
             "hand",
@@ -73,11 +73,11 @@ fn senses(task: &ReachTask) -> Vec<Entry> {
             "angles of the fingertip in the camera frame",
         ),
         entry(
-            "arm",
-            ["shoulder", "elbow"],
-            unit_square(),
-            "share of range",
-            "joint angles",
+            "obstacle",
+            ["azimuth", "elevation"],
+            angles(),
+            "rad",
+            "angles of the obstacle's axis in the camera frame; lowest when there is none",
         ),
         entry(
             "stretch",

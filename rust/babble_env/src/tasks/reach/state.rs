@@ -8,8 +8,24 @@ use super::case::ReachCase;
 use super::request::CaseRequest;
 use crate::progress::{Lifecycle, Progress};
 
-/// Numbers in a flat observation: eye 2, obstacle 2, hand 2, arm 2, stretch 2, time 1.
-pub const SENSES: usize = 11;
+/// Where each sense stands in a flat observation: by name, as Gymnasium flattens a Dict.
+pub mod at {
+    /// Shoulder and elbow.
+    pub const ARM: usize = 0;
+    /// Pan and tilt.
+    pub const EYE: usize = 2;
+    /// Azimuth and elevation of the fingertip.
+    pub const HAND: usize = 4;
+    /// Azimuth and elevation of the obstacle.
+    pub const OBSTACLE: usize = 6;
+    /// Shoulder and elbow.
+    pub const STRETCH: usize = 8;
+    /// Share of the episode.
+    pub const TIME: usize = 10;
+}
+
+/// Numbers in a flat observation.
+pub const SENSES: usize = at::TIME + 1;
 
 /// Everything that changes: what a snapshot holds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -1,0 +1,58 @@
+"""What works without PyTorch, and without any extra: all but PPO, and all but pictures too."""
+
+import subprocess
+import sys
+
+import pytest
+
+PYTORCH = ("stable_baselines3", "torch")
+PICTURES = ("matplotlib", "PIL", "moviepy", "pygame")
+FEW = ("--cases", "8")
+TABLES = (
+    ("list",),
+    ("info", "BabbleGrasp-v0"),
+    ("doctor",),
+    ("babble", "--movements", "250", "--out", "agent.safetensors"),
+    ("evaluate", "agent.safetensors", *FEW),
+    ("compare", "--movements", "250", *FEW),
+    ("compare", "--task", "grasp", "--agents", "hebb-paper,ppo-stored", "--babbles", "50", *FEW),
+    ("reproduce", "table1", "--seeds", "1", "--movements", "250", *FEW),
+    ("export",),
+)
+FIGURES = (
+    ("compare", "--movements", "1000", "--report", "report", *FEW),
+    ("reproduce", "fig2"),
+    ("reproduce", "fig5", "--movements", "1000"),
+    ("render", "scripted", "--out", "film", "--size", "32"),
+)
+PROGRAM = """
+import sys
+sys.modules.update(dict.fromkeys({blocked}))
+import gymnasium, gym_babble
+from gym_babble.cli import main
+gymnasium.make("BabbleGrasp-v0", render_mode="rgb_array").reset()
+for words in {commands}:
+    try:
+        main(words)
+    except SystemExit as ended:
+        assert not ended.code, words
+"""
+
+
+@pytest.mark.parametrize(
+    ("blocked", "commands"),
+    [(PYTORCH, FIGURES), ((*PYTORCH, *PICTURES), TABLES)],
+    ids=["without PyTorch", "without any extra"],
+)
+def test_the_commands_run(blocked, commands, tmp_path):
+    if commands == FIGURES:
+        pytest.importorskip("matplotlib", reason="the wheel's tests install no extra")
+    program = PROGRAM.format(blocked=blocked, commands=commands)
+    run = subprocess.run(
+        [sys.executable, "-W", "error", "-c", program],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr

@@ -64,9 +64,10 @@ def named_agent(
     """An agent by name, from a file, or your own.
 
     Args:
-        name: "random", "scripted" or "oracle"; a file that `HebbBabbling.save` wrote; a zip that
-            stable-baselines3 wrote, which holds pickled Python: load only those you trust; or
-            "module:Class", a class of your own, found from the current folder (see `own_agent`).
+        name: "random", "scripted" or "oracle"; a file that `HebbBabbling.save` wrote ("./random" if
+            it is called like one of these agents); a zip that stable-baselines3 wrote, which holds
+            pickled Python: load only those you trust; or "module:Class", a class of your own, found
+            from the current folder (see `own_agent`).
         env_id: Environment to act in; BabbleReachPattern-v0, or BabbleGrasp-v0 for an agent that
             has learnt to grasp, if not given, but a zip needs one.
         config: Config of body and task; the one it learnt on, or "paper", if not given.

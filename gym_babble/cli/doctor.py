@@ -9,6 +9,7 @@ import gymnasium
 import numpy as np
 import typer
 from rich.table import Table
+from rich.text import Text
 
 from gym_babble._core import debug_build
 from gym_babble.checks import processors
@@ -100,19 +101,18 @@ def _table(found: dict[str, Any]) -> Table:
     """The findings of `examine` as a table."""
     table = plain_table(None, ["what", "found"], left=2)
     for name, version in found["versions"].items():
-        table.add_row(name, version or "[dim]not installed[/]")
+        table.add_row(name, version or Text("not installed", "dim"))
     for extra, installed in found["extras"].items():
         table.add_row(
-            f"extra {extra}", "yes" if installed else f"no: pip install 'gym-babble\\[{extra}]'"
+            f"extra {extra}", "yes" if installed else f"no: pip install 'gym-babble[{extra}]'"
         )
     for name in ("platform", "build", "threads"):
         table.add_row(name, str(found[name]))
     state = found["state_hash"]
-    verdict = f"{state}: correct"
+    verdict = Text(f"{state}: correct")
     if not found["same_bits"]:
-        verdict = (
-            f"[red]{state}, expected {found['state_hash_expected']}: run `make setup` to rebuild[/]"
-        )
+        expected = found["state_hash_expected"]
+        verdict = Text(f"{state}, expected {expected}: run `make setup` to rebuild", "red")
     table.add_row("state after 20 steps of seed 0", verdict)
     table.add_row("a step with gymnasium.make", f"{found['step_us']:.1f} µs")
     table.add_row("a step in a batch of 64", f"{found['step_in_batch_of_64_us']:.1f} µs")

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from gym_babble.agents.loading import named_agent
+from gym_babble.agents.loading import REFERENCES, named_agent
 from gym_babble.cli.arguments import AgentName, AsJson, Cases, EnvId, OwnConfig, Seed
 from gym_babble.cli.output import print_json, print_results
 from gym_babble.study import evaluation
@@ -43,8 +43,10 @@ def evaluate(
         print_json({"agent": agent, "env_id": loaded.env_id, "seed": seed, "split": split, **rates})
         return
     table = rates_table(f"{cases:,} {task.cases}, 95 % Wilson intervals", task=task)
+    # A file may be called like an agent.
+    label = agent if Path(agent).name in REFERENCES else Path(agent).name
     for row in rate_rows([rates], [seed], task):
-        table.add_row(row.title or Path(agent).name, *rate_cells(row.rates, task))
+        table.add_row(row.title or label, *rate_cells(row.rates, task))
     if task.paper is not None:
         table.add_row("the paper", *rate_cells(paper_tally()))
     print_results(table)

@@ -26,7 +26,7 @@ EXTENSION_SOURCES := Cargo.toml Cargo.lock $(shell find rust -type f -not -name 
 
 .DEFAULT_GOAL := help
 .PHONY: help setup demo pictures test test-rust test-python slow soak fuzz golden-native wasm lint lint-rust \
-	lint-python lint-workflows deny bench microbench frameworks constraints audit-export clean
+	lint-python lint-workflows deny bench microbench frameworks results constraints audit-export clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -95,6 +95,10 @@ deny: $(STAMPS)/dependencies ## Check licences, sources and build scripts of the
 # BENCH holds options: `make bench BENCH='--only held'`.
 bench: setup ## Measure beside the peers (ten minutes), and write the docs' tables
 	$(BIN)/python -m bench.run $(BENCH)
+
+# RESULTS holds names of stores: `make results RESULTS='table1 sides'`.
+results: setup ## Measure the numbers of README and docs (about an hour), and write them there
+	$(BIN)/python -m results.run $(RESULTS)
 
 microbench: setup ## Measure parts: criterion in Rust, pytest-benchmark in Python
 	cargo bench

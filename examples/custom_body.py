@@ -24,7 +24,7 @@ for kd in arguments.kd:
     env = gym.make("BabbleReachPattern-v0", config=config)
     agent = HebbBabbling(env, seed=0).learn(arguments.movements)
     cases = scenarios("table1", arguments.cases, config=config)
-    result = evaluate(agent, cases=cases, config=config)
+    result = evaluate(agent, cases=cases)
     print(
         f"K_D {kd:g}: lag {kd / muscles.kp:.2f} s, legal {agent.learnt_rate:.3f}, "
         f"success {result.rate('success'):.3f}, collision {result.rate('collision'):.3f}, "

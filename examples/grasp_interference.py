@@ -6,6 +6,8 @@ postures for cases of each size. The table shows the gap from the palm's surface
 """
 
 import argparse
+import json
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -17,6 +19,7 @@ parser = argparse.ArgumentParser(description=__doc__)
 parser.add_argument("--seeds", type=int, default=3, help="seeds, from 100 on")
 parser.add_argument("--babbles", type=int, default=1_000)
 parser.add_argument("--cases", type=int, default=200, help="cases of each seed")
+parser.add_argument("--json", action="store_true", help="print one JSON document")
 arguments = parser.parse_args()
 
 SMALL, BIG = 0.024, 0.06
@@ -56,8 +59,10 @@ def recall(agent: HebbBabbling, diameter: float, seed: int) -> np.ndarray:
 
 HEADS = ("babbled with", "object", "gap [cm]", "thumb EP [deg]", "finger EP [deg]")
 HEADS += ("babbled EPs [deg]", "EPs recalled from the object in the hand [deg]")
-print(f"| {' | '.join(HEADS)} |")
-print("| --- " * len(HEADS) + "|")
+rows: list[dict[str, Any]] = []
+if not arguments.json:
+    print(f"| {' | '.join(HEADS)} |")
+    print("| --- " * len(HEADS) + "|")
 for name, diameters, config, brain in CHANGES:
     found: dict[float, list[np.ndarray]] = {SMALL: [], BIG: []}
     hands: dict[float, list[np.ndarray]] = {SMALL: [], BIG: []}
@@ -71,8 +76,15 @@ for name, diameters, config, brain in CHANGES:
             found[diameter].append(recall(agent, diameter, seed))
             hands[diameter].append(np.hstack([babbled.actions["hand"], again])[of_size])
     for diameter in (SMALL, BIG):
-        cells = [f"{x.mean():.2f} ± {x.std():.2f}" for x in np.concatenate(found[diameter]).T]
-        postures = np.concatenate(hands[diameter])
-        means = [f"{ep:.1f}" for ep in postures.mean(axis=0)] if len(postures) else ["–"] * 4
-        cells += [", ".join(means[:2]), ", ".join(means[2:])]
-        print(f"| {name} | {100 * diameter:g} cm | {' | '.join(cells)} |", flush=True)
+        recalled, postures = np.concatenate(found[diameter]), np.concatenate(hands[diameter])
+        in_hand = postures.mean(axis=0).tolist() if len(postures) else None
+        mean, spread = recalled.mean(axis=0).tolist(), recalled.std(axis=0).tolist()
+        row = {"babbled_with": name, "diameter": diameter, "mean": mean, "spread": spread}
+        rows.append({**row, "babbled": in_hand and in_hand[:2], "in_hand": in_hand and in_hand[2:]})
+        if not arguments.json:
+            cells = [f"{x:.2f} ± {s:.2f}" for x, s in zip(mean, spread, strict=True)]
+            means = [f"{ep:.1f}" for ep in in_hand] if in_hand else ["–"] * 4
+            cells += [", ".join(means[:2]), ", ".join(means[2:])]
+            print(f"| {name} | {100 * diameter:g} cm | {' | '.join(cells)} |", flush=True)
+if arguments.json:
+    print(json.dumps(rows))

@@ -16,7 +16,7 @@ agent = HebbBabbling("BabbleReachPattern-v0", variant="paper", seed=0)
 agent.learn(arguments.movements, progress_bar=True)
 print(f"{agent.learnt_rate:.3f} of {agent.babbled} babbled movements were legal (paper: about .20)")
 
-result = evaluate(agent, "BabbleReachPattern-v0", scenarios("table1", arguments.cases))
+result = evaluate(agent, cases=scenarios("table1", arguments.cases))
 for outcome, paper in (("collision", 0.23), ("joint_limit", 0.10), ("success", 0.67)):
     low, high = result.interval(outcome)
     print(f"{outcome} {result.rate(outcome):.3f} [{low:.3f}, {high:.3f}] (paper: {paper:.2f})")

@@ -1,4 +1,4 @@
-"""A learning rule of your own, in NumPy: Eq. 7 of the paper beside plain Hebb.
+"""A learning rule of your own, in NumPy: Eq. 7 of the paper beside plain Hebb, and Oja's rule.
 
 The agent babbles once for each rule and is tested on cases of Table I. Eq. 7 gets the paper's
 success; without its averages, every input neuron is tied to every movement that was ever legal.
@@ -7,6 +7,7 @@ python examples/own_rule.py              # 20,000 legal movements for each rule:
 """
 
 import argparse
+import json
 
 import numpy as np
 
@@ -16,6 +17,7 @@ parser = argparse.ArgumentParser(description=__doc__)
 parser.add_argument("--movements", type=int, default=20_000, help="legal movements to learn from")
 parser.add_argument("--cases", type=int, default=1_000, help="cases of Table I to be tested on")
 parser.add_argument("--variant", default="paper", choices=["paper", "conjunctive"])
+parser.add_argument("--json", action="store_true", help="print one JSON document")
 arguments = parser.parse_args()
 
 
@@ -37,9 +39,15 @@ def hebb(
 
 
 cases = scenarios("table1", arguments.cases)
-for rule in (hebb, covariance):
+rates = {}
+for rule in (hebb, "oja", covariance):
+    name = rule if isinstance(rule, str) else rule.__name__
     agent = HebbBabbling("BabbleReachPattern-v0", arguments.variant, rule=rule, seed=0)
     agent.learn(arguments.movements, progress_bar=True)
-    result = evaluate(agent, "BabbleReachPattern-v0", cases)
-    low, high = result.interval("success")
-    print(f"{rule.__name__}: success {result.rate('success'):.3f} [{low:.3f}, {high:.3f}]")
+    result = evaluate(agent, cases=cases)
+    rates[name] = result.rate("success")
+    if not arguments.json:
+        low, high = result.interval("success")
+        print(f"{name}: success {rates[name]:.3f} [{low:.3f}, {high:.3f}]")
+if arguments.json:
+    print(json.dumps(rates))

@@ -33,6 +33,6 @@ if arguments.save:
     write_file(arguments.save, model.getvalue())
 
 cases = scenarios("table1", arguments.cases)
-result = evaluate(trained.agent, trained.env_id, cases, **trained.env_kwargs)
+result = evaluate(trained.agent, cases=cases)
 low, high = result.interval("success")
 print(f"success {result.rate('success'):.3f} [{low:.3f}, {high:.3f}]")

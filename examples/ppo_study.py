@@ -54,7 +54,7 @@ def one_run(preset: str, steps: int, seed: int, cases: int) -> Run:
     processor = process_time() - began
     task = task_of(trained.env_id)
     test = scenarios(task.protocol, cases)
-    result = evaluate(trained.agent, trained.env_id, test, **trained.env_kwargs)
+    result = evaluate(trained.agent, cases=test)
     torch_on = {
         "torch_threads": torch.get_num_threads(),
         "torch_instructions": torch.backends.cpu.get_cpu_capability(),

@@ -48,6 +48,6 @@ model = SAC(
 model.learn(arguments.steps, callback=ProgressBar())
 env.close()
 
-result = evaluate(model, ENV, cases)
+result = evaluate(model, cases=cases)
 low, high = result.interval("success")
 print(f"success {result.rate('success'):.3f} [{low:.3f}, {high:.3f}]")

@@ -5,6 +5,7 @@ docs/model.md has the results.
 """
 
 import argparse
+import json
 from statistics import fmean
 from typing import Any
 
@@ -18,6 +19,7 @@ CHANGES: list[tuple[str, dict[str, Any], dict[str, Any], int]] = [
     ("camera frame fick", {"body": {"eye": FICK}}, {}, 20_000),
     ("movement time 5 s", {"reach": {"movement_s": 5.0}}, {}, 20_000),
     ("movement time 12 s", {"reach": {"movement_s": 12.0}}, {}, 20_000),
+    ("movement time 60 s", {"reach": {"movement_s": 60.0}}, {}, 20_000),
     ("obstacle radius 3.2 cm", {"body": {"obstacle": {"radius_m": 0.032}}}, {}, 20_000),
     ("obstacle radius 3.8 cm", {"body": {"obstacle": {"radius_m": 0.038}}}, {}, 20_000),
     ("distance up to 30 cm", {"reach": {"distance_m": [0.08, 0.30]}}, {}, 20_000),
@@ -34,10 +36,14 @@ parser = argparse.ArgumentParser(description=__doc__)
 parser.add_argument("--seeds", type=int, default=2, help="seeds, from 100 on")
 parser.add_argument("--cases", type=int, default=1_000, help="cases for each seed")
 parser.add_argument("--movements", type=int, help="legal movements, for all rows")
+parser.add_argument("--json", action="store_true", help="print one JSON document")
 arguments = parser.parse_args()
 
-print("| change | success | collision | joint limit | legal |")
-print("| --- | --- | --- | --- | --- |")
+OUTCOMES = ("success", "collision", "joint_limit")
+rows: list[dict[str, Any]] = []
+if not arguments.json:
+    print("| change | success | collision | joint limit | legal |")
+    print("| --- | --- | --- | --- | --- |")
 for name, changes, brain, movements in CHANGES:
     config = {"profile": "paper", **changes}
     tests, legal = [], []
@@ -46,9 +52,12 @@ for name, changes, brain, movements in CHANGES:
         agent = HebbBabbling(env, seed=seed, brain=brain)
         agent.learn(arguments.movements or movements)
         cases = scenarios("table1", arguments.cases, seed, split="validation", config=config)
-        tests.append(evaluate(agent, cases=cases, config=config))
+        tests.append(evaluate(agent, cases=cases))
         legal.append(agent.learnt_rate)
-    outcomes = ("success", "collision", "joint_limit")
-    rates = [fmean(test.rate(outcome) for test in tests) for outcome in outcomes]
-    row = " | ".join(f"{rate:.3f}" for rate in (*rates, fmean(legal)))
-    print(f"| {name} | {row} |", flush=True)
+    rates = {outcome: fmean(test.rate(outcome) for test in tests) for outcome in OUTCOMES}
+    rates["legal_rate"] = fmean(legal)
+    rows.append({"change": name, **rates})
+    if not arguments.json:
+        print(f"| {name} | {' | '.join(f'{rate:.3f}' for rate in rates.values())} |", flush=True)
+if arguments.json:
+    print(json.dumps(rows))

@@ -25,7 +25,8 @@ from gym_babble.agents import (
 from gym_babble.config import Config
 from gym_babble.envs.registration import register_all
 from gym_babble.export import export_mjcf, export_urdf
-from gym_babble.study.evaluation import Evaluation, evaluate
+from gym_babble.study.evaluation import evaluate
+from gym_babble.study.outcomes import Evaluation
 from gym_babble.study.scenarios import Scenario, scenarios
 
 __all__ = [

@@ -295,9 +295,10 @@ class GraspConfig:
     """Control steps over which a grasp must enclose the object, and over which it must then hold it
     without support [C]."""
     enclosed_share: float = 0.95
-    """Least share of physics steps with an enclosing contact before the support goes [C]."""
+    """Least share of physics steps in which the hand alone encloses the object, before the support
+    goes [C]."""
     held_share: float = 0.9
-    """Share of physics steps with an enclosing contact that must be exceeded after it went [C]."""
+    """Share of such physics steps that must be exceeded after it went [C]."""
     palm_reach_m: float = 0.06
     """The object counts as in the hand when its centre is on the palm's side and at most its radius
     and this far from the palm's centre [m] [C]."""

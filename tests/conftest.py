@@ -6,6 +6,8 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from gym_babble.paper.table2 import TableTwo, table2
+
 ROOT = Path(__file__).resolve().parent.parent
 # For `bench`, which is not installed; behind everything, so that an installed package stays first.
 sys.path.append(str(ROOT))
@@ -15,6 +17,12 @@ sys.path.append(str(ROOT))
 settings.register_profile("fixed", derandomize=True, deadline=None)
 settings.register_profile("fuzz", deadline=None, print_blob=True)
 settings.load_profile("fixed")
+
+
+@pytest.fixture(scope="session")
+def table_two() -> TableTwo:
+    """A small Table II of two seeds; results/stores.py has the same with more."""
+    return table2(seeds=2, cases=40, babbles=200, hold_trials=3)
 
 
 @pytest.fixture(scope="session")

@@ -60,7 +60,7 @@ def test_each_agent_is_tested_on_the_same_cases(comparison):
     cases = scenarios("table1", 50)
     for result in comparison.results:
         one = result.trained[0]
-        again = evaluate(one.agent, one.env_id, cases, **one.env_kwargs)
+        again = evaluate(one.agent, cases=cases)
         if result.contender.key != "random":  # It has gone on babbling.
             assert again == result.tests[0]
 
@@ -122,7 +122,7 @@ def test_agents_of_grasping_are_tested_on_the_same_cases(grasping):
     cases = scenarios("palm_side", 8)
     for result in grasping.results:
         if isinstance(result, TrainedResult) and result.contender.key != "random":
-            assert evaluate(result.trained[0].agent, "BabbleGrasp-v0", cases) == result.tests[0]
+            assert evaluate(result.trained[0].agent, cases=cases) == result.tests[0]
     # Who knows the geometry grasps, who acts at random does not: the rows are not exchanged.
     assert grasping.result("scripted").rates_by_seed[0]["success"]["count"] == 8
     assert grasping.result("random").rates_by_seed[0]["success"]["count"] == 0

@@ -25,6 +25,7 @@ RUNS = {
         "--movements 250 --cases 50",
         r"success 0\.\d+ \[0\.\d+, .+\] \(paper: 0\.67\)",
     ),
+    "curves.py": ("--cases 20", r"success 0\.\d+ \[0\.\d+, .+\]"),
     "own_rule.py": (
         "--movements 20 --cases 20",
         r"covariance: success 0\.\d+ \[0\.\d+, .+\]",
@@ -73,6 +74,25 @@ def test_last_line(name, repository, monkeypatch, capsys, tmp_path):
     runpy.run_path(str(path), run_name="__main__")
     last = capsys.readouterr().out.strip().splitlines()[-1]
     assert re.fullmatch(expected, last), last
+
+
+@pytest.mark.parametrize(
+    ("name", "keys"),
+    [
+        ("curves.py", {"success", "low", "high"}),
+        ("own_rule.py", {"hebb", "oja", "covariance"}),
+        ("sensitivity.py", {"change", "success", "collision", "joint_limit", "legal_rate"}),
+        ("grasp_sizes.py", {"diameter", "held", "edges"}),
+        ("grasp_sides.py", {"rows", "all"}),
+        ("grasp_interference.py", {"babbled_with", "mean", "spread", "babbled", "in_hand"}),
+    ],
+)
+def test_an_experiment_prints_json(name, keys, repository, monkeypatch, capsys):
+    path = repository / "examples" / name
+    monkeypatch.setattr(sys, "argv", [str(path), *RUNS[name][0].split(), "--json"])
+    runpy.run_path(str(path), run_name="__main__")
+    printed = json.loads(capsys.readouterr().out)
+    assert keys <= set(printed[0] if isinstance(printed, list) else printed)
 
 
 def test_what_a_study_of_grasping_writes_is_what_compare_shows(

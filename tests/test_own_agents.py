@@ -18,6 +18,8 @@ from gym_babble.study.compare import compare
 from gym_babble.study.contenders import Settings
 from gym_babble.viz.film import record
 
+PATTERN = "BabbleReachPattern-v0"
+
 OWN = '''
 import numpy as np
 
@@ -42,6 +44,9 @@ class Plain:
     def predict(self, observation):
         return np.zeros(2, np.float32)
 
+class Placed(Plain):
+    env = "BabbleReach-v0"
+
 class Mute:
     pass
 
@@ -64,18 +69,24 @@ def own(tmp_path, monkeypatch):
 
 def test_agents_of_ones_own_are_tested_by_name(own):
     cases = scenarios("table1", 30)
-    bulge = evaluate(f"{own}:Bulge", cases=cases)
+    bulge = evaluate(f"{own}:Bulge", PATTERN, cases)
     assert len(bulge.outcomes) == 30
-    assert len(evaluate(f"{own}:Seeded", cases=cases).outcomes) == 30
-    assert evaluate(f"{own}:Plain", cases=cases) != bulge
+    assert len(evaluate(f"{own}:Seeded", PATTERN, cases).outcomes) == 30
+    assert evaluate(f"{own}:Plain", PATTERN, cases) != bulge
+    with pytest.raises(ConfigError, match=r"Bulge: name the environment .*attribute `env`"):
+        evaluate(f"{own}:Bulge", cases=cases)
+    stepwise = evaluate(f"{own}:Placed", cases=cases)
+    assert stepwise == evaluate(f"{own}:Plain", "BabbleReach-v0", cases)
     assert evaluate("scripted", cases=cases) == evaluate(Scripted(), cases=cases)
     (result,) = compare([f"{own}:Bulge"], Settings(cases=30)).results
     assert result.rates_by_seed[0]["success"]["count"] == bulge.count("success")
     assert result.contender.title == "Bulge"
+    (placed,) = compare([f"{own}:Placed"], Settings(cases=30)).results
+    assert placed.tests == (stepwise,)
 
 
 def test_an_agent_of_one_argument_is_filmed(own):
-    film = record(named_agent(f"{own}:Bulge"), size=32)
+    film = record(named_agent(f"{own}:Bulge", env_id=PATTERN), size=32)
     assert len(film.frames) > 10
 
 
@@ -83,7 +94,7 @@ def test_an_agent_of_one_argument_is_filmed(own):
     ("name", "match"),
     [
         ("no_module:Class", "no module 'no_module'"),
-        ("{own}:Missing", "no class 'Missing'; it has Bulge, Seeded, Plain, Mute, Odd"),
+        ("{own}:Missing", "no class 'Missing'; it has Bulge, Seeded, Plain, Placed, Mute, Odd"),
         ("{own}:function", "no class 'function'"),
         ("{own}:Mute", r"no predict\(observation\)"),
         ("{own}:Odd", r"takes \(observation, state\)"),
@@ -92,14 +103,14 @@ def test_an_agent_of_one_argument_is_filmed(own):
 )
 def test_what_is_no_agent_is_named(own, name, match):
     with pytest.raises(ConfigError, match=match):
-        named_agent(name.format(own=own))
+        named_agent(name.format(own=own), env_id=PATTERN)
 
 
 @pytest.mark.usefixtures("own")
 def test_an_error_inside_of_ones_module_is_shown_as_it_is(tmp_path):
     (tmp_path / "broken_agent.py").write_text("import missing_library\n", encoding="utf-8")
     with pytest.raises(ModuleNotFoundError, match="missing_library"):
-        named_agent("broken_agent:Any")
+        named_agent("broken_agent:Any", env_id=PATTERN)
 
 
 def test_one_argument_sees_each_environment_by_itself():

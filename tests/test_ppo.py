@@ -20,7 +20,7 @@ def test_learns_whole_movements():
     assert trained.control_steps == 6_144 * 224  # (8 + 4 · 40/50) s at 50 ms
     assert [point.steps for point in trained.curve] == [2_048, 4_096, 6_144]
     assert trained.curve[-1].seconds == pytest.approx(trained.seconds)
-    result = evaluate(trained.agent, trained.env_id, scenarios("table1", 200), **trained.env_kwargs)
+    result = evaluate(trained.agent, cases=scenarios("table1", 200))
     assert result.rate("success") > 0.7
 
 
@@ -50,7 +50,7 @@ def test_grasping_is_validated_on_its_own_protocol():
     trained = train_ppo("grasp", steps=1, validation_cases=6, validations=1)
     assert trained.control_steps == 8_192
     cases = scenarios("palm_side", 6, split="validation")
-    result = evaluate(trained.agent, trained.env_id, cases, **trained.env_kwargs)
+    result = evaluate(trained.agent, cases=cases)
     assert [point.success for point in trained.curve] == [result.rate("success")]
 
 

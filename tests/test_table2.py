@@ -12,17 +12,12 @@ from gym_babble import HebbBabbling, scenarios
 from gym_babble.paper import fig7, fig8, holding, sight
 from gym_babble.paper import table2 as grasping
 from gym_babble.paper.tables import table2_tables
-from gym_babble.study.evaluation import wilson
+from gym_babble.study.outcomes import wilson
 
 
-@pytest.fixture(scope="module")
-def table():
-    return grasping.table2(seeds=2, cases=6, babbles=30, hold_trials=3)
-
-
-def test_rates_are_those_of_the_tests(table):
-    document = json.loads(json.dumps(table.to_json()))
-    rows = list(csv.DictReader(io.StringIO(table.to_csv())))
+def test_rates_are_those_of_the_tests(table_two):
+    document = json.loads(json.dumps(table_two.to_json()))
+    rows = list(csv.DictReader(io.StringIO(table_two.to_csv())))
     for size in document["sizes"]:
         for protocol, found in size["tests"].items():
             means, by_seed = found["over_seeds"], found["by_seed"]
@@ -44,29 +39,29 @@ def test_rates_are_those_of_the_tests(table):
             assert len(of_row) == len(by_seed)
 
 
-def test_every_grid_case_is_played_once_for_each_seed(table):
-    for size in table.sizes:
+def test_every_grid_case_is_played_once_for_each_seed(table_two):
+    for size in table_two.sizes:
         played = sum(case["diameter"] == size.diameter for case in scenarios("table2"))
         assert [len(test.outcomes) for test in size.tests["table2"].values()] == [played, played]
         assert size.hands.shape == (2 * played, 2)
 
 
-def test_the_small_object_closes_the_hand_further(table):
-    small, big = table.sizes
+def test_the_small_object_closes_the_hand_further(table_two):
+    small, big = table_two.sizes
     assert (small.babbled.mean(axis=0) < big.babbled.mean(axis=0) - 10).all()
     assert (np.abs(small.hands.mean(axis=0) - small.babbled.mean(axis=0)) < 10).all()
 
 
-def test_the_reflex_holds(table):
-    assert [rate["diameter"] for rate in table.hold] == list(holding.HOLD_DIAMETERS_M)
-    for rate in table.hold:
+def test_the_reflex_holds(table_two):
+    assert [rate["diameter"] for rate in table_two.hold] == list(holding.HOLD_DIAMETERS_M)
+    for rate in table_two.hold:
         assert rate["held"] == rate["trials"] == 3
         assert rate["penetration_mm"] < 3.0
 
 
-def test_a_first_seed_goes_on_where_an_earlier_table_ended(table):
-    second = grasping.table2(seed=1, seeds=1, cases=6, babbles=30, hold_trials=0)
-    for size, whole in zip(second.sizes, table.sizes, strict=True):
+def test_a_first_seed_goes_on_where_an_earlier_table_ended(table_two):
+    second = grasping.table2(seed=1, seeds=1, cases=40, babbles=200, hold_trials=0)
+    for size, whole in zip(second.sizes, table_two.sizes, strict=True):
         for protocol, tests in size.tests.items():
             of_seed_1 = {seed: test for seed, test in whole.tests[protocol].items() if seed == 1}
             assert tests == of_seed_1
@@ -80,9 +75,9 @@ def test_the_reflex_holds_in_90_of_100(capsys):
     assert all(rate["held"] >= 90 for rate in rates)
 
 
-def test_tables_show_both_sizes_beside_the_paper(table):
+def test_tables_show_both_sizes_beside_the_paper(table_two):
     console = Console(width=100, record=True, file=io.StringIO())
-    for part in table2_tables(table.to_json()):
+    for part in table2_tables(table_two.to_json()):
         console.print(part)
     text = console.export_text()
     seeds = ("2 seeds", "seed 0", "seed 1")

@@ -4,27 +4,35 @@ from __future__ import annotations
 
 import importlib
 import inspect
-import json
 import sys
 import zipfile
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import gymnasium
-from gymnasium import spaces
-
+from gym_babble.agents.acting import EnvArguments, arguments_for, carried
 from gym_babble.agents.base import predictor
 from gym_babble.agents.hebb import HebbBabbling
+from gym_babble.agents.models import fitted, is_model, load_model, load_normalizer
 from gym_babble.agents.reference import Oracle, Random, Scripted
 from gym_babble.envs.registry import environment
-from gym_babble.errors import AgentFileError, ConfigError, MissingExtraError
+from gym_babble.errors import ConfigError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from gym_babble.agents.base import Agent, EnvLike
     from gym_babble.config import ConfigLike
 
-__all__ = ["REFERENCES", "LoadedAgent", "load_agent", "named_agent", "own_agent"]
+__all__ = [
+    "REFERENCES",
+    "LoadedAgent",
+    "acting_agent",
+    "load_agent",
+    "named_agent",
+    "own_agent",
+    "own_class",
+]
 
 REFERENCES = ("random", "scripted", "oracle")
 PATTERN = "BabbleReachPattern-v0"
@@ -37,9 +45,7 @@ class LoadedAgent:
     """An agent and where it acts."""
 
     agent: Agent
-    env_id: str
-    config: ConfigLike
-    env_kwargs: dict[str, Any] = field(default_factory=dict)
+    arguments: EnvArguments
 
 
 def load_agent(path: str | Path, env: EnvLike | None = None) -> HebbBabbling:
@@ -58,8 +64,37 @@ def load_agent(path: str | Path, env: EnvLike | None = None) -> HebbBabbling:
     return HebbBabbling.load(path, env)
 
 
+def acting_agent(
+    agent: Agent | str,
+    env_id: str | None = None,
+    config: ConfigLike | None = None,
+    options: Mapping[str, Any] | None = None,
+) -> LoadedAgent:
+    """An agent, or the one of a name, and where it acts: as it says itself, or as you say.
+
+    Args:
+        agent: An agent, or the name of one for `named_agent`.
+        env_id: Environment to act in; needed if the agent does not say where it acts.
+        config: Config of body and task; the agent's own if not given.
+        options: Further options of the environment.
+
+    Raises:
+        ConfigError: The environment is not named, contradicts the agent's own, or does not fit it.
+    """
+    options = options or {}
+    if isinstance(agent, str):
+        return named_agent(agent, env_id=env_id, config=config, options=options)
+    return _acting(agent, env_id, config, options)
+
+
 def named_agent(
-    name: str, *, env_id: str | None = None, config: ConfigLike | None = None, seed: int = 0
+    name: str,
+    *,
+    env_id: str | None = None,
+    config: ConfigLike | None = None,
+    seed: int = 0,
+    options: Mapping[str, Any] | None = None,
+    vec_normalize: str | Path | None = None,
 ) -> LoadedAgent:
     """An agent by name, from a file, or your own.
 
@@ -68,33 +103,64 @@ def named_agent(
             it is called like one of these agents); a zip that stable-baselines3 wrote, which holds
             pickled Python: load only those you trust; or "module:Class", a class of your own, found
             from the current folder (see `own_agent`).
-        env_id: Environment to act in; BabbleReachPattern-v0, or BabbleGrasp-v0 for an agent that
-            has learnt to grasp, if not given, but a zip needs one.
+        env_id: Environment to act in. If not given, BabbleReachPattern-v0, or BabbleGrasp-v0 for an
+            agent that has learnt to grasp. A class of your own needs it unless it has an attribute
+            `env`; a zip needs it, and the option `control`, unless `train_ppo` trained the model.
         config: Config of body and task; the one it learnt on, or "paper", if not given.
         seed: Seed of an agent that takes one.
+        options: Further options of the environment.
+        vec_normalize: For a zip, the file of the `VecNormalize` that the model learnt behind.
+            Pickled Python too.
 
     Raises:
         FileNotFoundError: There is neither such a name nor such a file.
         AgentFileError: The file is not an agent.
-        ConfigError: There is no such environment, config, module or class, or the agent cannot act.
+        ConfigError: There is no such environment, config, module or class, the agent cannot act
+            there, or it says itself that it acts elsewhere.
     """
     if env_id is not None:
         environment(env_id)
-    if name in REFERENCES:
-        return _reference(name, env_id or PATTERN, "paper" if config is None else config, seed)
+    options = options or {}
     path = Path(name)
+    is_zip = path.is_file() and zipfile.is_zipfile(path)
+    if vec_normalize is not None and not is_zip:
+        raise ConfigError(f"{name} is not a zip of stable-baselines3: VecNormalize is for these")
+    if name in REFERENCES:
+        return _reference(name, env_id, config, seed, options)
     if ":" in name and not path.exists():
-        env_id, config = env_id or PATTERN, "paper" if config is None else config
-        agent = own_agent(name, gymnasium.make(env_id, config=config), seed=seed)
-        return LoadedAgent(agent, env_id, config)
+        return _own(name, env_id, config, seed, options)
     if not path.is_file():
         raise FileNotFoundError(
             f"{name}: no such file; agents by name are {', '.join(REFERENCES)}, "
             "and one of your own is module:Class"
         )
-    if zipfile.is_zipfile(path):
-        return _stable_baselines(path, env_id, "paper" if config is None else config)
-    return _hebb(path, env_id, config)
+    if not is_zip:
+        return _hebb(path, env_id, config, options)
+    normalizer = None if vec_normalize is None else Path(vec_normalize)
+    try:
+        return _acting(load_model(path), env_id, config, options, normalizer)
+    except ConfigError as error:
+        raise ConfigError(f"{path}: {error}") from error
+
+
+def _acting(
+    agent: Agent,
+    env_id: str | None,
+    config: ConfigLike | None,
+    options: Mapping[str, Any],
+    normalizer: Path | None = None,
+) -> LoadedAgent:
+    own = carried(agent)
+    if own is None and is_model(agent) and (env_id is None or "control" not in options):
+        raise ConfigError(
+            "the model does not say where it learnt, and models of several controls look alike: "
+            "name the environment and its control (--env-id and --control, or env_id and control)"
+        )
+    arguments = arguments_for(own, env_id, config, options)
+    if not is_model(agent):
+        return LoadedAgent(agent, arguments)
+    found = None if normalizer is None else load_normalizer(normalizer, arguments)
+    return LoadedAgent(*fitted(agent, arguments, found, any_obs="obs" not in options))
 
 
 def own_agent(name: str, env: EnvLike, *, seed: int = 0) -> Agent:
@@ -107,6 +173,17 @@ def own_agent(name: str, env: EnvLike, *, seed: int = 0) -> Agent:
 
     Raises:
         ConfigError: There is no such module or class, or it has no `predict(observation)`.
+    """
+    agent = _made(own_class(name), env, seed)
+    predictor(agent)
+    return agent  # type: ignore[no-any-return]
+
+
+def own_class(name: str) -> type:
+    """The class of "module:Class".
+
+    Raises:
+        ConfigError: There is no such module or class.
     """
     module_name, _, class_name = name.partition(":")
     here = str(Path.cwd())
@@ -130,9 +207,7 @@ def own_agent(name: str, env: EnvLike, *, seed: int = 0) -> Agent:
             f"{name}: module {module_name!r} has no class {class_name!r}; "
             f"it has {', '.join(classes) or 'none'}"
         )
-    agent = _made(cls, env, seed)
-    predictor(agent)
-    return agent  # type: ignore[no-any-return]
+    return cls
 
 
 def _made(cls: type, env: EnvLike, seed: int) -> Any:
@@ -148,64 +223,49 @@ def _made(cls: type, env: EnvLike, seed: int) -> Any:
     return cls(env, **seeded) if takes_env else cls(**seeded)
 
 
-def _reference(name: str, env_id: str, config: ConfigLike, seed: int) -> LoadedAgent:
-    env = gymnasium.make(env_id, config=config)
-    agent: Agent
+def _own(
+    name: str,
+    env_id: str | None,
+    config: ConfigLike | None,
+    seed: int,
+    options: Mapping[str, Any],
+) -> LoadedAgent:
+    env_id = env_id or getattr(own_class(name), "env", None)
+    if not isinstance(env_id, str):
+        raise ConfigError(
+            f"{name}: name the environment (--env-id, or env_id), or give the class an attribute "
+            "`env`, an id"
+        )
+    arguments = arguments_for(None, env_id, config, options)
+    return LoadedAgent(own_agent(name, arguments.single(), seed=seed), arguments)
+
+
+def _reference(
+    name: str,
+    env_id: str | None,
+    config: ConfigLike | None,
+    seed: int,
+    options: Mapping[str, Any],
+) -> LoadedAgent:
+    arguments = arguments_for(None, env_id or PATTERN, config, options)
+    env = arguments.single()
+    agent: Random | Scripted | Oracle
     if name == "random":
         agent = Random(env, seed=seed)
     elif name == "scripted":
         agent = Scripted(env)
     else:
         agent = Oracle(env, threads=None)
-    return LoadedAgent(agent, env_id, config)
+    return LoadedAgent(agent, arguments)
 
 
-def _hebb(path: Path, env_id: str | None, config: ConfigLike | None) -> LoadedAgent:
+def _hebb(
+    path: Path, env_id: str | None, config: ConfigLike | None, options: Mapping[str, Any]
+) -> LoadedAgent:
     agent = load_agent(path)
-    env_id = env_id or ACTS_IN[agent.interface.entry.name]
-    if config is None:
-        config = json.loads(agent.interface.task.config())
-    return LoadedAgent(load_agent(path, gymnasium.make(env_id, config=config)), env_id, config)
-
-
-def _stable_baselines(path: Path, env_id: str | None, config: ConfigLike) -> LoadedAgent:
-    if env_id is None:
-        raise ConfigError(f"{path}: name the environment it learnt in with --env-id")
-    try:
-        import stable_baselines3
-        import torch
-    except ImportError as error:
-        raise MissingExtraError("stable-baselines3", "sb3") from error
-    torch.set_num_threads(1)  # These networks are too small for a second one to help.
-    algorithm = getattr(stable_baselines3, _algorithm(path))
-    try:
-        model = algorithm.load(path, device="cpu")
-    except Exception as error:  # Unpickling can raise anything.
-        raise AgentFileError(f"{path}: {error}") from error
-    for obs in (environment(env_id).presets.get("obs", "senses"), "flat"):
-        space = gymnasium.make(env_id, obs=obs, config=config).observation_space
-        if _shapes(space) == _shapes(model.observation_space):
-            return LoadedAgent(model, env_id, config, {"obs": obs})
-    raise ConfigError(f"{path}: it has learnt from other observations than {env_id} gives")
-
-
-def _shapes(space: spaces.Space[Any]) -> Any:
-    """Shapes by name; the bounds may differ, as they do between bodies."""
-    if isinstance(space, spaces.Dict):
-        return {name: part.shape for name, part in space.items()}
-    return space.shape
-
-
-def _algorithm(path: Path) -> str:
-    """Which of stable-baselines3's algorithms for continuous actions wrote a zip."""
-    try:
-        with zipfile.ZipFile(path) as archive:
-            data = json.loads(archive.read("data"))
-        module = data["policy_class"]["__module__"]
-    except (KeyError, TypeError, ValueError, zipfile.BadZipFile) as error:
-        raise AgentFileError(f"{path}: not a model of stable-baselines3") from error
-    if module.startswith("stable_baselines3.sac."):
-        return "SAC"
-    if module.startswith("stable_baselines3.td3."):
-        return "TD3"
-    return "PPO" if "n_epochs" in data else "A2C"
+    learnt = EnvArguments.of(agent.interface)
+    if env_id is not None or options:
+        # The file says task and config; the control is the caller's.
+        env_id = env_id or ACTS_IN[learnt.task]
+        agent = load_agent(path, arguments_for(None, env_id, learnt.config, options).single())
+    return LoadedAgent(agent, arguments_for(EnvArguments.of(agent.interface), None, config, {}))

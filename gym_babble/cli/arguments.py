@@ -17,6 +17,7 @@ __all__ = [
     "Babbles",
     "Cases",
     "ConfigName",
+    "ControlName",
     "EnvId",
     "FirstSeed",
     "Movements",
@@ -27,6 +28,8 @@ __all__ = [
     "Seeds",
     "TaskName",
     "Variant",
+    "VecNormalizeFile",
+    "given_options",
     "one_of",
 ]
 
@@ -59,14 +62,36 @@ QuasiStatic = Annotated[
 EnvId = Annotated[
     str | None,
     typer.Option(
-        help="Environment of the test. Default: BabbleReachPattern-v0, or BabbleGrasp-v0 for an "
-        "agent that babbled grasping."
+        help="Environment of the test. Default: the agent's own; BabbleReachPattern-v0 for agents "
+        "by name and for a file of an agent that babbled reaching. Needed for module:Class without "
+        "`env`, and for a zip that train_ppo did not make."
+    ),
+]
+ControlName = Annotated[
+    str | None,
+    typer.Option(
+        help="Control of the test. Default: the environment's. A zip needs it as it needs --env-id."
     ),
 ]
 OwnConfig = Annotated[
     str | None,
-    typer.Option(help="paper, icub, or a file. Default: the config that the agent learnt with."),
+    typer.Option(
+        help="paper, icub, or a file. Default: the config that the agent learnt with, else paper."
+    ),
 ]
+VecNormalizeFile = Annotated[
+    Path | None,
+    typer.Option(
+        help="For a zip: the statistics that VecNormalize.save wrote (pickled Python too)."
+    ),
+]
+
+
+def given_options(**options: Any) -> dict[str, Any]:
+    """The options that are given."""
+    return {name: value for name, value in options.items() if value is not None}
+
+
 ALL_AGENTS = "; ".join(
     f"{task}: " + ",".join(f"[{one.key}]" if one.opt_in else one.key for one in CONTENDERS[task])
     for task in TASKS

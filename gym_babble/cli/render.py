@@ -6,7 +6,16 @@ from typing import Annotated, Literal
 import typer
 
 from gym_babble.agents.loading import named_agent
-from gym_babble.cli.arguments import AgentName, EnvId, OwnConfig, Seed, one_of
+from gym_babble.cli.arguments import (
+    AgentName,
+    ControlName,
+    EnvId,
+    OwnConfig,
+    Seed,
+    VecNormalizeFile,
+    given_options,
+    one_of,
+)
 from gym_babble.cli.output import name_files, say
 from gym_babble.envs.registry import TASKS
 from gym_babble.files import check_folder
@@ -32,11 +41,20 @@ def render(
         int, typer.Option(min=16, max=4096, help="Width and height of a picture [pixel].")
     ] = 360,
     env_id: EnvId = None,
+    control: ControlName = None,
     config: OwnConfig = None,
+    vec_normalize: VecNormalizeFile = None,
 ) -> None:
     """Film an episode of an agent: a contact sheet, and frames, GIF or MP4."""
     check_folder(folder, "--out")
-    loaded = named_agent(agent, env_id=env_id, config=config, seed=seed)
+    loaded = named_agent(
+        agent,
+        env_id=env_id,
+        config=config,
+        seed=seed,
+        options=given_options(control=control),
+        vec_normalize=vec_normalize,
+    )
     film = record(loaded, seed=seed, camera=camera, size=size)
     say(f"{film.outcome} after {len(film.frames) - 1} control steps")
     name_files(save_film(film, folder, kind))

@@ -22,8 +22,9 @@ class BabbleGraspEnv(BabbleEnv):
     they hide all of it the eye stays. Contacts and friction are simulated.
 
     A grasp counts when finger and thumb, or finger and palm, enclose the object for a second; the
-    support is then taken away and the hand has to hold it for another second. Contact alone, or
-    nearness alone, would be fooled by a ball that is wedged between hand and support.
+    support is then taken away and the hand has to hold it for another second. In both seconds a
+    contact counts only while neither obstacle, upper arm nor forearm touches the object: an open
+    hand can pin it against each of them, and a pinned object does not follow the hand.
 
     ## Action space
 
@@ -61,11 +62,11 @@ class BabbleGraspEnv(BabbleEnv):
 
     - `progress` (terms progress + enclosure + success + failure): decrease of the distance between
       the object and the hollow of the hand over 10 cm; increase of the share of the last second
-      with a finger's contact plus that with the thumb's or the palm's, halved; +1 for success; −1
-      for a lost object or a collision.
+      with a finger's contact plus that with the thumb's or the palm's, halved (contacts that
+      count); +1 for success; −1 for a lost object or a collision.
     - `sparse`: 1 for success, else 0.
-    - with `obs="goal"`: 0 with the object's centre within 2 cm of the goal, else −1;
-      `compute_reward` gives the same.
+    - with `obs="goal"`: 0 with the object's centre within 2 cm of the goal, else −1, and −1 after a
+      failure; `compute_reward` gives the same.
 
     ## Starting state
 
@@ -85,8 +86,9 @@ class BabbleGraspEnv(BabbleEnv):
     - `timeout`: truncated after 240 steps (12 s), 500 in region `full`.
 
     With `obs="goal"` nothing terminates: after `lost` or `collision` everything stays as it is
-    until the time limit, and `achieved_goal` is beyond all goals, so that an object dropped at its
-    goal earns nothing; else the outcome is `success` if the object is at the goal then.
+    until the time limit, and `achieved_goal` is a corner of its space, for which `compute_reward`
+    is −1 whatever the goal: an object dropped at its goal earns nothing. Otherwise the outcome at
+    the time limit is `success` if the object is at the goal then.
 
     ## Info
 

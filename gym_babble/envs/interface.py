@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import json
 from collections.abc import Mapping
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from gym_babble import _core
 from gym_babble.checks import numbers, plain, shown
 from gym_babble.config import ConfigLike, config_json
+from gym_babble.envs.labels import SCENARIO_LABELS, check_labels, config_label
 from gym_babble.envs.registry import CasePart, task_entry
 from gym_babble.envs.spaces import Spec, observation_space
 from gym_babble.errors import ConfigError, ScenarioError
@@ -22,11 +24,9 @@ if TYPE_CHECKING:
 
     from gym_babble.envs.registry import TaskEntry
 
-__all__ = ["RENDER_MODES", "SCENARIO_LABELS", "Interface", "document"]
+__all__ = ["RENDER_MODES", "Interface", "document"]
 
 RENDER_MODES = ("human", "rgb_array", "rgb_array_list")
-SCENARIO_LABELS = ("protocol", "index")
-"""Parts of a scenario that say where it is from."""
 
 
 class Interface:
@@ -57,6 +57,11 @@ class Interface:
         self.action_space = self.spec.action.box
         self.outcomes = np.array(_core.outcomes(), dtype=object)
         """Names by the core's codes."""
+
+    @cached_property
+    def config_label(self) -> str:
+        """Name of the config, as cases bear it."""
+        return config_label(self.task, self.entry.name)
 
     @property
     def obs(self) -> str:
@@ -97,6 +102,7 @@ class Interface:
         if scenario is not None:
             if not isinstance(scenario, Mapping):
                 raise ScenarioError(f"scenario is a {type(scenario).__name__}, expected a Scenario")
+            check_labels(scenario, self.entry.name, self.options, self.config_label)
             given = {**scenario, **given}
         parts = {part.name: part for part in self.entry.case_parts}
         unknown = set(given) - {*parts, *SCENARIO_LABELS}

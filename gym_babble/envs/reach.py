@@ -55,7 +55,8 @@ class BabbleReachEnv(BabbleEnv):
     - `progress` (terms progress + success + failure): decrease of the distance to the target over
       10 cm, +1 for success, −1 for a collision or a joint limit. A return lies in (−8, 4).
     - `sparse`: 1 for success, else 0.
-    - with `obs="goal"`: 0 within 2 cm of the target, else −1; `compute_reward` gives the same.
+    - with `obs="goal"`: 0 within 2 cm of the target, else −1, and −1 after a failure;
+      `compute_reward` gives the same.
 
     ## Starting state
 
@@ -66,9 +67,12 @@ class BabbleReachEnv(BabbleEnv):
     ## Episode end
 
     - `success` (terminated): first step with the fingertip within 2 cm of the target; with
-      `settled=True` also joint speeds below .05 rad/s. In `pattern` control only the end counts.
+      `settled=True` also joint speeds below .05 rad/s. In `pattern` control only the end of the
+      movement counts, by the same measure.
     - `collision` (terminated): arm or hand touches the obstacle, at any moment within a step. With
-      `obs="goal"` the arm stands still until the time limit instead, since ending early would pay.
+      `obs="goal"` the arm stands still until the time limit instead, since ending early would pay,
+      and `achieved_goal` is a corner of its space, for which `compute_reward` is −1 whatever the
+      goal.
     - `joint_limit` (terminated): in `pattern` control, the path asks for a posture outside of the
       joint ranges.
     - `timeout`: truncated after 240 steps (12 s); in `pattern` control terminated, as every step.

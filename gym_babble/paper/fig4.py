@@ -5,16 +5,17 @@ Drawing needs the extra `figures`.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from gym_babble import _core
+from gym_babble.agents import Random, Scripted
 from gym_babble.agents.base import predictor
-from gym_babble.config import config_json
 from gym_babble.envs import BabbleReachEnv
 from gym_babble.errors import ScenarioError
-from gym_babble.viz.style import FAINT, INK, LEFT, RED, RIGHT, row_of_axes, styled
+from gym_babble.study.evaluation import evaluate
+from gym_babble.study.scenarios import scenarios
+from gym_babble.viz.style import INK, LEFT, RED, RIGHT, row_of_axes, styled
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,10 +28,7 @@ if TYPE_CHECKING:
     from gym_babble.config import ConfigLike
     from gym_babble.study.scenarios import Scenario
 
-__all__ = ["Trajectory", "draw", "starts_without_case", "switched", "trajectories"]
-
-STARTS = 36
-"""Starts around each target."""
+__all__ = ["Straight", "Trajectory", "draw", "reached", "switched", "trajectories"]
 
 
 class Trajectory(NamedTuple):
@@ -48,14 +46,11 @@ class Trajectory(NamedTuple):
 def trajectories(
     agent: Agent, cases: Sequence[Scenario], config: ConfigLike = "paper"
 ) -> list[Trajectory]:
-    """The movements of an agent in `pattern` control. Impossible cases are skipped."""
+    """The movements of an agent in `pattern` control."""
     env = BabbleReachEnv("rgb_array", control="pattern", reward="sparse", config=config)
     predict, made = predictor(agent), []
     for case in cases:
-        try:
-            observation, _ = env.reset(options={"scenario": case})
-        except ScenarioError:
-            continue
+        observation, _ = env.reset(options={"scenario": case})
         action, _ = predict(observation, None, np.array([True]), True)  # noqa: FBT003
         *_, info = env.step(action)
         b1 = 0.5 + 0.5 * float(action[0])
@@ -71,38 +66,51 @@ def switched(case: Scenario) -> Scenario:
     return {**case, "start": (x, y), "obstacle": (*case["start"], radius)}
 
 
-def starts_without_case(config: ConfigLike = "paper") -> NDArray[np.float64]:
-    """Starts of Fig. 4 (n, 2) [m] that are out of reach or have the arm inside the obstacle."""
-    listed = _core.Task("reach", config_json(config), "{}").cases("fig4", 1, 0, "test", 1)
-    angles = 2.0 * np.pi * np.arange(STARTS) / STARTS
-    missing = []
-    for first in range(0, len(listed), STARTS):
-        around = listed[first : first + STARTS]
-        known = next((case for case in around if case is not None), None)
-        if known is None:
-            continue
-        target = np.array(known["target"])
-        radius = np.linalg.norm(np.array(known["start"]) - target)
-        starts = target + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-        missing += [start for start, case in zip(starts, around, strict=True) if case is None]
-    return np.array(missing).reshape(-1, 2)
+class Straight:
+    """Moves straight to the target, b1 = b2 = ½."""
+
+    def predict(self, observation: Any) -> NDArray[np.float32]:  # noqa: ARG002
+        """The same action for every observation."""
+        return np.zeros(2, np.float32)
+
+
+def reached(agent: Agent, seed: int = 0, config: ConfigLike = "paper") -> dict[str, Any]:
+    """How many movements reach the target on the left and on the right of Fig. 4.
+
+    Counts of the agent, and of agents that show what the panels demand: a straight movement, a
+    random one, and one that curves to the shoulder.
+    """
+    halfway = scenarios("fig4", config=config)
+    panels = {"halfway": halfway, "switched": [switched(case) for case in halfway]}
+    agents: dict[str, Any] = {
+        "agent": agent,
+        "straight": Straight(),
+        "random": Random("BabbleReachPattern-v0", seed=seed),
+        "scripted": Scripted("BabbleReachPattern-v0"),
+    }
+    counts = {
+        name: {
+            panel: evaluate(one, cases=cases, config=config).count("success")
+            for panel, cases in panels.items()
+        }
+        for name, one in agents.items()
+    }
+    return {"cases": len(halfway), "reached": counts}
 
 
 @styled
 def draw(
     halfway: Sequence[Trajectory],
     exchanged: Sequence[Trajectory],
-    missing: NDArray[np.float64] | None = None,
 ) -> Figure:
     """Draws trajectories with the obstacle halfway, and with obstacle and start exchanged.
 
-    Bold: success; dotted: failure, up to a red cross; blue curves left, orange right; grey crosses:
-    starts without a case. Obstacles are not drawn.
+    Bold: success; dotted: failure, up to a red cross; blue curves left, orange right. Obstacles are
+    not drawn.
 
     Args:
         halfway: Movements with the obstacle halfway to the target.
         exchanged: Movements with obstacle and start exchanged.
-        missing: Starts without a case (n, 2) [m].
     """
     figure, (left, right) = row_of_axes((10.0, 4.2), 2, sharex=True, sharey=True)
     for axes, movements, title in (
@@ -119,8 +127,6 @@ def draw(
         axes.set(
             title=f"{title}: {reached} of {len(movements)} reach", xlabel="x [cm]", aspect="equal"
         )
-    if missing is not None and len(missing):
-        left.plot(100 * missing[:, 0], 100 * missing[:, 1], "x", ms=3, mew=0.6, color=FAINT)
     left.set_ylabel("y [cm]")
     return figure
 

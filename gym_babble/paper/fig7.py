@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from gym_babble.agents.base import predictor
-from gym_babble.envs import BabbleGraspEnv
+from gym_babble.agents.loading import acting_agent
 from gym_babble.progress import track
+from gym_babble.study.evaluation import for_cases
 from gym_babble.viz.style import FAINT, INK, LEFT, RED, row_of_axes, styled
 
 if TYPE_CHECKING:
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from gym_babble.agents.base import Agent
-    from gym_babble.config import ConfigLike
     from gym_babble.study.scenarios import GraspScenario
 
 __all__ = ["PalmTrajectory", "draw", "trajectories"]
@@ -46,13 +46,18 @@ class PalmTrajectory(NamedTuple):
 def trajectories(
     agent: Agent,
     cases: Sequence[GraspScenario],
-    config: ConfigLike = "paper",
     *,
     progress_bar: bool = False,
 ) -> list[PalmTrajectory]:
-    """The palm's trajectories in tests of an agent."""
-    env = BabbleGraspEnv("rgb_array", config=config, max_episode_steps=TEST_STEPS)
-    predict, made = predictor(agent), []
+    """The palm's trajectories in tests of an agent, on its own body.
+
+    Raises:
+        ScenarioError: Cases of another config than the agent's.
+    """
+    limit = {"max_episode_steps": TEST_STEPS}
+    loaded = acting_agent(agent, options=limit)
+    env = for_cases(loaded.arguments, cases, limit).single("rgb_array")
+    predict, made = predictor(loaded.agent), []
     parts = track([1] * len(cases), "testing", total=len(cases), show=progress_bar)
     for case, _ in zip(cases, parts, strict=True):
         observation, info = env.reset(seed=0, options={"scenario": case})

@@ -10,7 +10,7 @@ from gym_babble import _core
 from gym_babble.checks import check_flag, check_number, check_whole, numbers, processors
 from gym_babble.config import config_json
 from gym_babble.progress import track
-from gym_babble.study.evaluation import wilson
+from gym_babble.study.outcomes import wilson
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +17,7 @@ from gym_babble.study.scenarios import scenarios
 
 if TYPE_CHECKING:
     from gym_babble.config import ConfigLike
-    from gym_babble.study.evaluation import Evaluation
+    from gym_babble.study.outcomes import Evaluation
 
 __all__ = ["CONTROLS", "TableOne", "table1"]
 
@@ -40,16 +41,22 @@ class TableOne:
     def to_json(self) -> dict[str, Any]:
         """Rates of each seed, with Wilson intervals over its cases; means and ranges of seeds."""
         by_seed = [tally(test) for test in self.tests]
+        paper, rates = paper_tally(), over_seeds(by_seed, OUTCOMES)
+        cases = sum(len(test) for test in self.tests)
         return {
             **self.settings,
-            "paper": {"legal_rate": 0.2, **paper_tally()},
+            "paper": {"legal_rate": 0.2, **paper},
             "by_seed": [
                 {"seed": seed, "legal_rate": legal, **rates}
                 for seed, legal, rates in zip(self.seeds, self.legal_rates, by_seed, strict=True)
             ],
             "over_seeds": {
                 "legal_rate": spread(self.legal_rates),
-                **over_seeds(by_seed, OUTCOMES),
+                **rates,
+            },
+            "z_from_paper": {
+                name: _z_score(rates[name]["mean"], cases, paper[name]["rate"], paper["cases"])
+                for name in OUTCOMES
             },
         }
 
@@ -61,6 +68,12 @@ class TableOne:
             for seed, test, legal in zip(self.seeds, self.tests, self.legal_rates, strict=True)
         ]
         return "".join(",".join(map(str, line)) + "\n" for line in (header, *lines))
+
+
+def _z_score(rate: float, n: int, other: float, m: int) -> float | None:
+    """Difference of the rates of n and m independent cases, over its standard error."""
+    error = math.sqrt(rate * (1 - rate) / n + other * (1 - other) / m)
+    return (rate - other) / error if error else None
 
 
 def table1(
@@ -104,7 +117,7 @@ def table1(
         agent.learn(movements, progress_bar=progress_bar)
         drawn = scenarios("table1", cases, one, config=config)
         bar = progress_bar and control != "pattern"  # Pattern tests take a moment.
-        tests.append(evaluate(agent, env_id, drawn, config=config, progress_bar=bar))
+        tests.append(evaluate(agent, cases=drawn, progress_bar=bar))
         legal_rates.append(agent.learnt_rate)
     settings = {
         "config": str(config),

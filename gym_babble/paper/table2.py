@@ -9,11 +9,12 @@ import gymnasium
 import numpy as np
 
 from gym_babble.agents import HebbBabbling
+from gym_babble.agents.acting import EnvArguments
 from gym_babble.checks import check_seed, check_whole, processors
 from gym_babble.config import Config, config_json
 from gym_babble.errors import ConfigError
 from gym_babble.paper.holding import hold_rates
-from gym_babble.study.evaluation import evaluate
+from gym_babble.study.evaluation import evaluate, for_cases
 from gym_babble.study.rates import counted, counts, over_seeds
 from gym_babble.study.scenarios import scenarios
 
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from gym_babble.agents import Experiences
     from gym_babble.agents.base import Agent
     from gym_babble.config import ConfigLike
-    from gym_babble.study.evaluation import Evaluation
+    from gym_babble.study.outcomes import Evaluation
     from gym_babble.study.scenarios import GraspProtocol, GraspScenario
 
 __all__ = [
@@ -194,10 +195,10 @@ def table2(
             for diameter, collected in sizes.items():
                 chosen = [case for case in drawn if case["diameter"] == diameter]
                 if chosen:
-                    test = _play(agent, chosen, config, progress_bar=progress_bar)
+                    test = _play(agent, chosen, progress_bar=progress_bar)
                     collected.tests[protocol][one] = test
                 if protocol == "table2":
-                    collected.hands.append(recalled_hands(agent, chosen, config))
+                    collected.hands.append(recalled_hands(agent, chosen))
     hold = hold_rates(hold_trials, config, progress_bar=progress_bar) if hold_trials else []
     settings = {
         "config": str(config),
@@ -248,25 +249,19 @@ def table_diameters(config: ConfigLike) -> list[float]:
     return sorted({case["diameter"] for case in scenarios("table2", config=config)})
 
 
-def _play(
-    agent: Agent, cases: Sequence[GraspScenario], config: ConfigLike, *, progress_bar: bool
-) -> Evaluation:
+def _play(agent: Agent, cases: Sequence[GraspScenario], *, progress_bar: bool) -> Evaluation:
     return evaluate(
         agent,
-        "BabbleGrasp-v0",
-        cases,
-        config=config,
+        cases=cases,
         progress_bar=progress_bar,
         max_episode_steps=TEST_STEPS,
         threads=processors(),
     )
 
 
-def recalled_hands(
-    agent: HebbBabbling, cases: Sequence[GraspScenario], config: ConfigLike = "paper"
-) -> NDArray[np.float64]:
+def recalled_hands(agent: HebbBabbling, cases: Sequence[GraspScenario]) -> NDArray[np.float64]:
     """Equilibrium points of thumb and finger that each case recalls (n, 2) [deg]."""
-    envs = gymnasium.make_vec("BabbleGrasp-v0", num_envs=len(cases), config=config)
+    envs = for_cases(EnvArguments.of(agent.interface), cases, {}).batch(len(cases))
     senses, _ = envs.reset(seed=0, options={"scenario": list(cases)})
     envs.close()
     return agent.decide(senses)[:, 2:]

@@ -54,15 +54,14 @@ def _trajectories(comparison: Comparison, key: str) -> str:
         return ""
     config, agent = comparison.settings.config, result.trained[0].agent
     cases = scenarios("fig4", config=config)
-    missing = fig4.starts_without_case(config)
     halfway = fig4.trajectories(agent, cases, config)
     exchanged = fig4.trajectories(agent, [fig4.switched(case) for case in cases], config)
     return f"<h2>Trajectories of {escape(result.contender.title)} (Fig. 4)</h2>\n" + figure_html(
-        svg_source(fig4.draw(halfway, exchanged, missing)),
+        svg_source(fig4.draw(halfway, exchanged)),
         "Four targets (circles) and 36 starts around each (dots), obstacles not drawn. Bold: "
-        "success; dotted: failure, up to a red cross. Blue curves left, orange right. Grey "
-        f"crosses: {len(missing)} starts without a case: out of reach, or with the arm inside the "
-        "obstacle. Right: obstacle and start exchanged.",
+        "success; dotted: failure, up to a red cross. Blue curves left, orange right. On the "
+        "right, obstacle and start are exchanged: the obstacle stands behind the hand, and a "
+        "straight movement reaches the target too.",
     )
 
 
@@ -102,7 +101,7 @@ def hands_section(comparison: Comparison) -> str:
     return (
         "<h2>Trajectories of the hand (Fig. 7)</h2>\n"
         + figure_html(
-            svg_source(fig7.draw(fig7.trajectories(agent, cases, config))),
+            svg_source(fig7.draw(fig7.trajectories(agent, cases))),
             "Final portions of the palm's trajectories to 12 places of each object, all around the "
             "arm, in a quarter of the figure's tests. Thin: touched; bold: grasped; dotted grey: "
             "missed. Circles are the objects, to scale.",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gym_babble.agents.loading import LoadedAgent
+from gym_babble.agents.loading import acting_agent
 from gym_babble.report.html import figure_html, png_source
 from gym_babble.study.comparison import TrainedResult
 from gym_babble.viz.film import contact_sheet, png, record
@@ -40,12 +40,12 @@ def _filmed(
     if not played:
         return None
     result = played[0]
-    trained, config = result.trained[0], comparison.settings.config
+    trained = result.trained[0]
     test = result.tests[0]
     outcomes = zip(test.cases, test.outcomes, strict=True)
     solved = [case for case, outcome in outcomes if outcome == "success"]
     case: Any = max(solved or test.cases, key=worth)
-    loaded = LoadedAgent(trained.agent, trained.env_id, config, trained.env_kwargs)
+    loaded = acting_agent(trained.agent, trained.env_id, comparison.settings.config)
     film = record(loaded, options={"scenario": case}, size=600)
     eye = record(loaded, options={"scenario": case}, camera="eye", size=630).frames[0]
     tests = f"{len(test.cases):,} tests"

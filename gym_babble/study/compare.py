@@ -100,12 +100,7 @@ def _run(
     for one, its_cases in zip(trained, cases, strict=True):
         with one.while_acting():
             test = evaluate(
-                one.agent,
-                one.env_id,
-                its_cases,
-                config=settings.config,
-                progress_bar=bar,
-                **one.env_kwargs,
+                one.agent, one.env_id, its_cases, config=settings.config, progress_bar=bar
             )
         tests.append(test)
     rates = tuple(tally(test, task) for test in tests)

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from rich.text import Text
 
     from gym_babble.study.contenders import Contender, Settings
-    from gym_babble.study.evaluation import Evaluation
     from gym_babble.study.learning import Learning, Trained
+    from gym_babble.study.outcomes import Evaluation
     from gym_babble.study.stored import Study
     from gym_babble.study.tables import RateRow
 
@@ -151,11 +151,14 @@ class Comparison:
 
     @property
     def notes(self) -> list[str]:
-        """Which contenders were left out and why, and which results are stored."""
-        left_out = [f"left out: {key}: {why}" for key, why in self.skipped.items()]
-        return left_out + [
-            result.note for result in self.results if isinstance(result, StoredResult)
-        ]
+        """Who was left out and why, where agents of your own act, and which results are stored."""
+        notes = [f"left out: {key}: {why}" for key, why in self.skipped.items()]
+        for result in self.results:
+            if isinstance(result, StoredResult):
+                notes.append(result.note)
+            elif ":" in result.contender.key:
+                notes.append(f"{result.contender.key}: acts in {result.env_id}")
+        return notes
 
     def to_json(self) -> dict[str, Any]:
         """The comparison as one document of JSON types."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import gymnasium
 
 from gym_babble.agents import HebbBabbling, Oracle, Random, Scripted
-from gym_babble.agents.loading import own_agent
+from gym_babble.agents.loading import own_agent, own_class
 from gym_babble.study.learning import VALIDATION_CASES, CurvePoint, CurveRecorder, Trained
 
 if TYPE_CHECKING:
@@ -108,7 +108,6 @@ def _ppo(preset: str) -> Callable[[Settings, int], Trained]:
         return Trained(
             agent=ppo.agent,
             env_id=ppo.env_id,
-            env_kwargs=ppo.env_kwargs,
             trials=ppo.movements,
             control_steps=ppo.control_steps,
             seconds=ppo.seconds,
@@ -194,8 +193,12 @@ CONTENDERS = {
 
 
 def own_contender(name: str, task: str) -> Contender:
-    """An agent of a user's own, by `module:Class`, which does not learn here."""
-    env_id = PATTERN if task == "reach" else GRASPING
+    """An agent of a user's own, by `module:Class`, which does not learn here.
+
+    It acts in its class's `env`, an id, or else where the task's Hebb agents act.
+    """
+    named = getattr(own_class(name), "env", None)
+    env_id = named if isinstance(named, str) else {"reach": PATTERN, "grasp": GRASPING}[task]
     make = _without_learning(lambda env, seed: own_agent(name, env, seed=seed), env_id)
     module, _, cls = name.partition(":")
     return Contender(name, cls, module, make, slow_test=True)

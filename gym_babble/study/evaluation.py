@@ -1,193 +1,180 @@
-"""Outcomes of an agent's tests, as rates with intervals."""
+"""Plays an agent's tests."""
 
 from __future__ import annotations
 
-import difflib
-import math
-from dataclasses import dataclass, field
-from itertools import chain, compress
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
-import gymnasium
 import numpy as np
+from gymnasium.vector import AutoresetMode
 
 from gym_babble.agents.base import predictor
-from gym_babble.agents.loading import named_agent
-from gym_babble.errors import ConfigError
+from gym_babble.agents.loading import acting_agent
+from gym_babble.envs.registry import task_entry
+from gym_babble.errors import ConfigError, ScenarioError
 from gym_babble.progress import track
+from gym_babble.study.outcomes import Evaluation, joined
 from gym_babble.study.scenarios import scenarios
-from gym_babble.study.tasks import task_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Sequence
 
+    from gym_babble.agents.acting import EnvArguments
     from gym_babble.agents.base import Agent
+    from gym_babble.agents.loading import LoadedAgent
     from gym_babble.config import ConfigLike
+    from gym_babble.envs import BabbleVectorEnv
     from gym_babble.study.scenarios import GraspScenario, Scenario
 
-__all__ = ["Evaluation", "evaluate", "wilson"]
+__all__ = ["default_cases", "evaluate", "for_cases", "play_cases"]
 
 ENVS = 250
 """Environments of a batch."""
 
-MANY_SIZES = 5
-"""More sizes than these are split in two halves."""
-
-
-@dataclass(frozen=True)
-class Evaluation:
-    """The results of an evaluation, case by case."""
-
-    cases: tuple[Mapping[str, Any], ...]
-    """The cases."""
-    outcomes: tuple[str, ...]
-    """Outcome of each case."""
-    steps: tuple[int, ...]
-    """Control steps of each case; 1 in `pattern` control."""
-    returns: tuple[float, ...]
-    """Sum of rewards of each case."""
-    facts: dict[str, tuple[bool, ...]] = field(default_factory=dict)
-    """Facts at the end of each case, with the names in `info`."""
-    possible: tuple[str, ...] = ()
-    """All outcomes that an episode can have."""
-
-    def __len__(self) -> int:
-        """Number of cases."""
-        return len(self.outcomes)
-
-    def count(self, name: str) -> int:
-        """Number of cases with this outcome, or in which this fact is true.
-
-        Raises:
-            ConfigError: There is no such outcome or fact.
-        """
-        if name in self.facts:
-            return sum(self.facts[name])
-        if name in self.possible:
-            return self.outcomes.count(name)
-        known = (*self.possible, *self.facts)
-        near = difflib.get_close_matches(str(name), known, 1)
-        meant = f"; did you mean {near[0]!r}?" if near else ""
-        raise ConfigError(f"{name!r} is not one of {', '.join(known)}{meant}")
-
-    def rate(self, name: str) -> float:
-        """Share of cases with this outcome, or in which this fact is true.
-
-        Raises:
-            ConfigError: There is no such outcome or fact.
-        """
-        return self.count(name) / len(self)
-
-    def interval(self, name: str) -> tuple[float, float]:
-        """95 % Wilson interval of the rate: what these cases say about all such cases.
-
-        It says nothing about other seeds of learning.
-
-        Raises:
-            ConfigError: There is no such outcome or fact.
-        """
-        return wilson(self.count(name), len(self))
-
-    def by_size(self) -> dict[str, Evaluation]:
-        """The cases of each size of the object, small ones first; empty if all have one size.
-
-        More than five sizes make two halves. In reaching there are no sizes.
-        """
-        sizes = np.array([case.get("diameter", 0.0) for case in self.cases])
-        each = np.unique(sizes).tolist()
-        if len(each) < 2:
-            return {}
-        if len(each) <= MANY_SIZES:
-            return {f"{100 * size:g} cm": self._where(sizes == size) for size in each}
-        low, middle, high = each[0], (each[0] + each[-1]) / 2, each[-1]
-        return {
-            f"{100 * low:.2g}–{100 * middle:.2g} cm": self._where(sizes <= middle),
-            f"{100 * middle:.2g}–{100 * high:.2g} cm": self._where(sizes > middle),
-        }
-
-    def _where(self, chosen: Sequence[bool]) -> Evaluation:
-        """Some of the cases."""
-        return Evaluation(
-            cases=tuple(compress(self.cases, chosen)),
-            outcomes=tuple(compress(self.outcomes, chosen)),
-            steps=tuple(compress(self.steps, chosen)),
-            returns=tuple(compress(self.returns, chosen)),
-            facts={name: tuple(compress(held, chosen)) for name, held in self.facts.items()},
-            possible=self.possible,
-        )
-
-
-def _joined(parts: Sequence[Evaluation]) -> Evaluation:
-    """The cases of one test, played in parts."""
-    chained = chain.from_iterable
-    return Evaluation(
-        cases=tuple(chained(part.cases for part in parts)),
-        outcomes=tuple(chained(part.outcomes for part in parts)),
-        steps=tuple(chained(part.steps for part in parts)),
-        returns=tuple(chained(part.returns for part in parts)),
-        facts={name: tuple(chained(part.facts[name] for part in parts)) for name in parts[0].facts},
-        possible=parts[0].possible,
-    )
-
-
-def wilson(count: int, n: int, z: float = 1.959964) -> tuple[float, float]:
-    """Wilson score interval of a rate, 95 % by default (Wilson 1927)."""
-    if n == 0:
-        return 0.0, 1.0
-    p = count / n
-    middle = (p + z * z / (2 * n)) / (1 + z * z / n)
-    half = z / (1 + z * z / n) * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
-    # Rounding must not put the rate outside its interval, which could happen at 0 or 1.
-    return max(0.0, min(p, middle - half)), min(1.0, max(p, middle + half))
-
 
 def evaluate(
     agent: Agent | str,
-    env_id: str = "BabbleReachPattern-v0",
+    env_id: str | None = None,
     cases: Sequence[Scenario | GraspScenario] | None = None,
     *,
-    config: ConfigLike = "paper",
+    config: ConfigLike | None = None,
     deterministic: bool = True,
     progress_bar: bool = False,
-    **env_kwargs: Any,
+    threads: int | None = None,
+    autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+    **options: Any,
 ) -> Evaluation:
-    """Plays one episode of each case.
+    """Plays one episode of each case, in the environment that the agent acts in.
+
+    Our agents and models of stable-baselines3 with an environment say themselves where they act:
+    id, config and control. What is given here may choose rewards, observations and time limit; if
+    it contradicts the agent, it is an error.
 
     Args:
         agent: Any object with stable-baselines3's `predict`, or with a `predict(observation)` that
             returns an action; or the name of one: "random", "scripted", "oracle", a file, or
             "module:Class".
-        env_id: Id of the environment.
-        cases: Cases from `scenarios`. By default 1,000 test cases of seed 0: of Table I for
-            reaching, of the region "palm_side" for grasping.
-        config: Body and task.
+        env_id: Id of the environment; needed if the agent has neither `interface` nor `env`.
+        cases: Cases from `scenarios`; those of a region are played in it, with its time limit. By
+            default 1,000 test cases of seed 0: of Table I for reaching, of the environment's region
+            for grasping.
+        config: Body and task; the agent's if not given.
         deterministic: Passed to `predict`.
         progress_bar: Show a progress bar.
-        env_kwargs: Further arguments of the environment.
+        threads: Threads that step the environments; results do not depend on it.
+        autoreset_mode: Of the batch that plays the cases; results do not depend on it.
+        options: Further options of the environment.
 
     Raises:
-        ConfigError: No cases, or an unknown or invalid argument.
-        ScenarioError: A case that cannot be played with this config.
+        ConfigError: No cases, an unknown or invalid argument, an agent that does not say where it
+            acts, or an environment that contradicts it.
+        ScenarioError: Cases of another task or config, or one that cannot be played.
+    """
+    loaded = acting_agent(agent, env_id, config, options)
+    return play_cases(
+        loaded,
+        cases,
+        options,
+        deterministic=deterministic,
+        progress_bar=progress_bar,
+        threads=threads,
+        autoreset_mode=autoreset_mode,
+    )
+
+
+def play_cases(
+    loaded: LoadedAgent,
+    cases: Sequence[Scenario | GraspScenario] | None,
+    given: Mapping[str, Any],
+    *,
+    deterministic: bool = True,
+    progress_bar: bool = False,
+    threads: int | None = None,
+    autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+) -> Evaluation:
+    """`evaluate` for an agent whose environment is known.
+
+    Args:
+        loaded: The agent and its environment.
+        cases: As for `evaluate`.
+        given: Options that the caller chose; what the cases preset replaces none of them.
+        deterministic: As for `evaluate`.
+        progress_bar: As for `evaluate`.
+        threads: As for `evaluate`.
+        autoreset_mode: As for `evaluate`.
     """
     if cases is None:
-        cases = scenarios(task_of(env_id).protocol, 1000, config=config)
-    if isinstance(agent, str):
-        loaded = named_agent(agent, env_id=env_id, config=config)
-        agent, env_kwargs = loaded.agent, {**loaded.env_kwargs, **env_kwargs}
+        cases = default_cases(loaded.arguments)
+    cases = list(cases)
     if not cases:
         raise ConfigError("cases is empty: it must have at least one")
-    groups = [cases[i : i + ENVS] for i in range(0, len(cases), ENVS)]
+    for i, case in enumerate(cases):
+        if not isinstance(case, Mapping):
+            raise ScenarioError(f"cases[{i}] is a {type(case).__name__}, expected a Scenario")
+    groups = list(_groups(cases))
     parts = []
     sizes = (len(group) for group in groups)
     for i, _ in enumerate(track(sizes, "evaluating", total=len(cases), show=progress_bar)):
-        envs = gymnasium.make_vec(env_id, num_envs=len(groups[i]), config=config, **env_kwargs)
-        parts.append(_play(agent, envs, groups[i], deterministic=deterministic))
+        arguments = for_cases(loaded.arguments, groups[i], given)
+        envs = arguments.batch(len(groups[i]), threads=threads, autoreset_mode=autoreset_mode)
+        parts.append(_play(loaded.agent, envs, groups[i], deterministic=deterministic))
         envs.close()
-    return _joined(parts)
+    return joined(parts)
+
+
+def default_cases(
+    arguments: EnvArguments, n: int = 1_000, seed: int = 0, split: str = "test"
+) -> list[Any]:
+    """The cases that results in an environment are reported on."""
+    protocol = next(
+        one
+        for one in task_entry(arguments.task).protocols.values()
+        if all(arguments.option(name) == value for name, value in one.presets.items())
+    )
+    goal = _needs_goals(arguments)
+    return scenarios(protocol.name, n, seed, split=split, config=arguments.config, goal=goal)
+
+
+def _needs_goals(arguments: EnvArguments) -> bool:
+    """Whether a case has a goal of its own, in the goal form."""
+    parts = {part.name for part in task_entry(arguments.task).case_parts}
+    return arguments.option("obs") == "goal" and "goal" in parts
+
+
+def _groups(cases: Sequence[Any]) -> Iterator[Sequence[Any]]:
+    """Batches of cases of one protocol each."""
+    for _, same in groupby(cases, lambda case: case.get("protocol")):
+        of_protocol = list(same)
+        for i in range(0, len(of_protocol), ENVS):
+            yield of_protocol[i : i + ENVS]
+
+
+def for_cases(
+    arguments: EnvArguments, cases: Sequence[Any], given: Mapping[str, Any]
+) -> EnvArguments:
+    """The environment with what the cases' protocol presets, unless the caller gave it.
+
+    Raises:
+        ConfigError: The goal form, and cases without goals.
+    """
+    if _needs_goals(arguments) and any("goal" not in case for case in cases):
+        raise ConfigError(
+            f"{arguments.title} needs cases with goals: scenarios(protocol, ..., goal=True)"
+        )
+    protocol = task_entry(arguments.task).protocols.get(cases[0].get("protocol", ""))
+    presets = {} if protocol is None else protocol.presets
+    presets = {name: v for name, v in presets.items() if name not in given}
+    changed = {name: v for name, v in presets.items() if arguments.option(name) != v}
+    options = arguments.options
+    if changed and "max_episode_steps" not in given:  # Another region has another time limit.
+        options = {name: v for name, v in options.items() if name != "max_episode_steps"}
+    return replace(arguments, options={**options, **changed})
 
 
 def _play(
-    agent: Agent, envs: Any, cases: Sequence[Scenario | GraspScenario], *, deterministic: bool
+    agent: Agent, envs: BabbleVectorEnv, cases: Sequence[Any], *, deterministic: bool
 ) -> Evaluation:
     """Plays one episode in each environment. Ended environments continue, but are ignored."""
     n = len(cases)
@@ -198,7 +185,7 @@ def _play(
     running = np.ones(n, np.bool_)
     steps, returns = np.zeros(n, np.int64), np.zeros(n)
     outcomes = np.full(n, "running", object)
-    spec = envs.get_attr("interface")[0].spec
+    spec, mode = envs.interface.spec, envs.metadata["autoreset_mode"]
     facts = {name: np.zeros(n, np.bool_) for name in spec.facts}
     while running.any():
         actions, state = predict(observation, state, starts, deterministic)
@@ -207,11 +194,15 @@ def _play(
         steps[running] += 1
         returns[running] += rewards[running]
         ending = running & ended
-        outcomes[ending] = infos["outcome"][ending]
-        for name, values in facts.items():
-            values[ending] = infos[name][ending]
+        last = infos.get("final_info", infos)  # Restarted already, in mode SameStep.
+        if ending.any():
+            outcomes[ending] = last["outcome"][ending]
+            for name, values in facts.items():
+                values[ending] = last[name][ending]
         running &= ~ended
-        # Ended environments restart at their next step; their later steps are ignored.
+        if mode is AutoresetMode.DISABLED and ended.any():
+            observation, _ = envs.reset(options={"reset_mask": ended})
+        # Ended environments restart; their later steps are ignored.
         starts = ended
     return Evaluation(
         tuple(cases),

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from contextlib import nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from gym_babble.study.evaluation import evaluate
 from gym_babble.study.scenarios import scenarios
@@ -57,8 +57,6 @@ class Trained(Learning):
 
     agent: Agent
     env_id: str
-    env_kwargs: dict[str, Any] = field(default_factory=dict)
-    """Further arguments of the environment; the config is not among them."""
     while_acting: Callable[[], AbstractContextManager[None]] = nullcontext
     """Makes the context in which the agent is tested."""
 
@@ -76,7 +74,7 @@ class CurveRecorder:
     def __init__(self, env_id: str, config: ConfigLike, marks: Collection[int], steps: int) -> None:
         protocol = task_of(env_id).protocol
         self._cases = scenarios(protocol, VALIDATION_CASES, split="validation", config=config)
-        self._config, self._env_id = config, env_id
+        self._env_id = env_id
         self._marks, self._steps = marks, steps
         self._began = perf_counter()
         self.seconds = 0.0
@@ -86,7 +84,7 @@ class CurveRecorder:
         """Records progress; call it during learning."""
         self.seconds += perf_counter() - self._began
         if accepted in self._marks:
-            test = evaluate(agent, self._env_id, self._cases, config=self._config)
+            test = evaluate(agent, cases=self._cases)
             point = CurvePoint(trials * self._steps, self.seconds, test.rate("success"))
             self.curve.append(point)
         self._began = perf_counter()

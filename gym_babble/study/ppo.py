@@ -6,10 +6,11 @@ import math
 from contextlib import contextmanager
 from dataclasses import dataclass
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from gym_babble.agents.acting import MARK, EnvArguments, marked
 from gym_babble.config import Config
 from gym_babble.errors import ConfigError, MissingExtraError
 from gym_babble.sb3 import BabbleVecEnv, ProgressBar
@@ -49,11 +50,10 @@ class TrainedPPO:
     """A trained agent and its training."""
 
     agent: PPO
-    """The agent, which `gym_babble.evaluate` can test."""
+    """The agent, which `gym_babble.evaluate` can test. It says where it learnt, and so does the
+    zip that its `save` writes."""
     env_id: str
     """Id of the environment in which it learnt."""
-    env_kwargs: dict[str, Any]
-    """Further arguments of the environment, for `evaluate`; the config is not among them."""
     movements: int
     """Episodes that ended during learning; in `pattern` control each is one movement."""
     control_steps: int
@@ -105,19 +105,19 @@ def train_ppo(
         )
 
         def validate() -> float:
-            played = evaluate(model, chosen.env_id, cases, config=config, **chosen.env_kwargs)
-            return played.rate("success")
+            return evaluate(model, cases=cases).rate("success")
 
         rollouts = math.ceil((steps or chosen.steps) / (model.n_steps * env.num_envs))
         recorder = _Recorder(rollouts, validations if cases else 0, validate)
         callbacks = [recorder, *([ProgressBar("PPO")] if progress_bar else [])]
         callbacks += [callback] if callback is not None else []
         model.learn(rollouts * model.n_steps * env.num_envs, callback=CallbackList(callbacks))
+        place = EnvArguments.of(env.get_attr("interface")[0])
+        setattr(model, MARK, marked(place, model._n_updates))  # noqa: SLF001 - no public name
         env.close()
     return TrainedPPO(
         agent=model,
         env_id=chosen.env_id,
-        env_kwargs=dict(chosen.env_kwargs),
         movements=recorder.episodes,
         control_steps=model.num_timesteps * _control_steps(env),
         seconds=recorder.seconds,

@@ -9,13 +9,13 @@ from __future__ import annotations
 from statistics import fmean
 from typing import TYPE_CHECKING, Any
 
-from gym_babble.study.evaluation import wilson
+from gym_babble.study.outcomes import wilson
 from gym_babble.study.tasks import REACH
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
-    from gym_babble.study.evaluation import Evaluation
+    from gym_babble.study.outcomes import Evaluation
     from gym_babble.study.tasks import Task
 
 __all__ = [

@@ -8,7 +8,7 @@ from typing import Any
 from gym_babble.envs import registry
 from gym_babble.errors import ConfigError
 
-__all__ = ["GRASP", "REACH", "TASKS", "Task", "task_of"]
+__all__ = ["GRASP", "REACH", "TASKS", "Task", "task_named", "task_of"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,7 +75,15 @@ def task_of(env_id: str) -> Task:
     Raises:
         ConfigError: An unknown environment.
     """
-    task = registry.environment(env_id).task
-    if task not in TASKS:
-        raise ConfigError(f"{env_id!r}: there are no tests of task {task!r}")
-    return TASKS[task]
+    return task_named(registry.environment(env_id).task)
+
+
+def task_named(name: str) -> Task:
+    """The task of that name.
+
+    Raises:
+        ConfigError: A task without tests.
+    """
+    if name not in TASKS:
+        raise ConfigError(f"there are no tests of task {name!r}")
+    return TASKS[name]

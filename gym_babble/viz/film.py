@@ -8,7 +8,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-import gymnasium
 import numpy as np
 
 from gym_babble.agents.base import predictor
@@ -55,15 +54,7 @@ def record(
         camera: Camera of the environment.
         size: Width and height of the pictures [pixel].
     """
-    env: Any = gymnasium.make(
-        loaded.env_id,
-        render_mode="rgb_array_list",
-        camera=camera,
-        width=size,
-        height=size,
-        config=loaded.config,
-        **loaded.env_kwargs,
-    )
+    env = loaded.arguments.single("rgb_array_list", camera=camera, width=size, height=size)
     predict = predictor(loaded.agent)
     observation, info = env.reset(seed=seed, options=options)
     frames, state, start, running = list(env.render()), None, True, True

@@ -72,7 +72,7 @@ def fig7(
     check_picture(file)
     agent = learn_grasping(babbles, seed, config)
     cases = scenarios("fig7", config=config)
-    save(palm.draw(palm.trajectories(agent, cases, config, progress_bar=True)), file)
+    save(palm.draw(palm.trajectories(agent, cases, progress_bar=True)), file)
     name_files([file])
 
 

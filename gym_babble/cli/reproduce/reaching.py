@@ -85,25 +85,29 @@ def fig2(file: Picture = Path("fig2.png")) -> None:
 
 
 def fig4(
+    *,
     file: Picture = Path("fig4.png"),
     variant: Variant = "paper",
     movements: Movements = 20_000,
     seed: Seed = 0,
     config: ConfigName = "paper",
+    as_json: AsJson = False,
 ) -> None:
     """Figure 4: trajectories to 4 targets from 36 starts around each."""
     check_picture(file)
     agent = learn_reaching(variant, movements, seed, config)
     cases = scenarios("fig4", config=config)
-    exchanged_cases = [movements_to_targets.switched(case) for case in cases]
     halfway = movements_to_targets.trajectories(agent, cases, config)
-    exchanged = movements_to_targets.trajectories(agent, exchanged_cases, config)
-    missing = movements_to_targets.starts_without_case(config)
-    for name, played in (("obstacle halfway", halfway), ("switched", exchanged)):
-        reached = sum(movement.outcome == "success" for movement in played)
-        print_results(f"{name}: {reached} of {len(played)} reach")
-    print_results(f"{len(missing)} starts have no case")
-    save(movements_to_targets.draw(halfway, exchanged, missing), file)
+    exchanged = [movements_to_targets.switched(case) for case in cases]
+    switched = movements_to_targets.trajectories(agent, exchanged, config)
+    save(movements_to_targets.draw(halfway, switched), file)
+    counts = movements_to_targets.reached(agent, seed, config)
+    if as_json:
+        print_json({"config": config, "variant": variant, "movements": movements, **counts})
+    else:
+        for name, found in counts["reached"].items():
+            both = f"{found['halfway']} halfway, {found['switched']} switched"
+            print_results(f"{name}: {both}, of {counts['cases']}")
     name_files([file])
 
 
@@ -112,13 +116,19 @@ def fig5(
     movements: Movements = 20_000,
     seed: Seed = 0,
     config: ConfigName = "paper",
+    as_json: AsJson = False,
 ) -> None:
     """Figure 5: the weights of two sets of input neurons."""
     check_picture(file)
     sets = weights.weight_sets(learn_reaching("paper", movements, seed, config))
-    print_results(
-        f"{sets.left.sum()} input neurons curve left, {sets.right.sum()} right; the mean of one "
-        f"set correlates {share(sets.mirror_correlation)} with the mirrored mean of the other"
-    )
+    left, right, correlation = sets.left.sum(), sets.right.sum(), sets.mirror_correlation
+    if as_json:
+        found = {"left": int(left), "right": int(right), "mirror_correlation": correlation}
+        print_json({"config": config, "movements": movements, "seed": seed, **found})
+    else:
+        print_results(
+            f"{left} input neurons curve left, {right} right; the mean of one set correlates "
+            f"{share(correlation)} with the mirrored mean of the other"
+        )
     save(weights.draw(sets), file)
     name_files([file])

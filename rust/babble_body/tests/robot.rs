@@ -288,10 +288,10 @@ fn the_obstacle_stops_the_arm() {
         obstacle: Some(obstacle),
         ..setup(robot.open_hand(start), FAR)
     });
-    assert!(!robot.touch(&world).obstacle);
+    assert!(!robot.touch(&world).collision);
     let drive = towards(robot.open_hand([1.6, 0.6]));
     run(&robot, &mut world, &drive, 3.0);
-    assert!(robot.touch(&world).obstacle);
+    assert!(robot.touch(&world).collision);
     let shoulder = robot.posture(&world)[0];
     assert!((0.2..1.0).contains(&shoulder), "{shoulder}");
 }

@@ -102,11 +102,15 @@ pub enum EnvError {
     },
     /// No case could be drawn: the config leaves no room for one.
     #[error(
-        "no legal movement in {tries} tries: this config leaves no room between arm, obstacle and joint ranges"
+        "no legal movement: of {drawn} random starts and targets the arm can stand at both ends of \
+         {played}, and none of the {played} movements tried between them is legal; this config leaves \
+         no room between arm, obstacle and joint ranges"
     )]
     NoLegalCase {
-        /// How many were tried.
-        tries: u32,
+        /// Random starts and targets.
+        drawn: u32,
+        /// Movements between those that can be posed.
+        played: u32,
     },
     /// No case of grasping could be drawn: the config leaves no room for one.
     #[error("no case in {tries} tries that can be played; in the last one, {problem}")]

@@ -19,3 +19,11 @@ named_enum!(
     /// The object is out of reach or was dropped.
     Lost = "lost"
 );
+
+impl Outcome {
+    /// Whether the task can no longer be done in this episode.
+    #[must_use]
+    pub const fn is_failure(self) -> bool {
+        matches!(self, Self::Collision | Self::JointLimit | Self::Lost)
+    }
+}

@@ -72,22 +72,22 @@ impl Ending {
     /// Ends the step just made, after which the task is `done` or not, and says whether it
     /// terminated or truncated the episode.
     ///
-    /// An episode that failed is no success, even where positions alone would make it one.
+    /// The task sets the outcome of a failure; every other outcome is decided here, so that outcome,
+    /// success facts and end agree. An episode that failed is no success, even where positions alone
+    /// would make it one.
     pub(crate) fn conclude(self, progress: &mut Progress, done: bool) -> [bool; 2] {
         progress.steps += 1;
-        let failed = !matches!(progress.outcome, Outcome::Running | Outcome::Success);
+        let failed = progress.outcome.is_failure();
         progress.is_success = done && !failed;
         progress.ever_success |= progress.is_success;
-        if progress.is_success && !self.goal {
-            progress.outcome = Outcome::Success;
-        }
-        let terminated = self.single_step || (progress.outcome != Outcome::Running && !self.goal);
+        let decided = !self.goal && (failed || progress.is_success);
+        let terminated = self.single_step || decided;
         let truncated = !terminated && progress.steps >= self.max_steps;
-        if truncated && progress.outcome == Outcome::Running {
-            progress.outcome = if progress.is_success {
-                Outcome::Success
-            } else {
-                Outcome::Timeout
+        if !failed {
+            progress.outcome = match (terminated || truncated, progress.is_success) {
+                (false, _) => Outcome::Running,
+                (true, true) => Outcome::Success,
+                (true, false) => Outcome::Timeout,
             };
         }
         [terminated, truncated]

@@ -11,7 +11,7 @@ use serde_json::Value;
 use crate::case::{CasePart, CaseValues};
 use crate::config::Config;
 use crate::error::EnvError;
-use crate::executor::Executor;
+use crate::executor::{Executor, Stop};
 use crate::near;
 use crate::outcome::Outcome;
 use crate::picture::View;
@@ -98,8 +98,14 @@ pub trait Task: fmt::Debug + Send + Sync + Sized + 'static {
     /// Draws a case.
     ///
     /// # Errors
-    /// [`EnvError`] when the case asked for cannot be played.
-    fn draw(&self, request: &Self::Request, stream: &mut Stream) -> Result<Self::Drawn, EnvError>;
+    /// [`EnvError`] when the case asked for cannot be played, and [`EnvError::Interrupted`] when `stop`
+    /// says so, which a long search asks.
+    fn draw(
+        &self,
+        request: &Self::Request,
+        stream: &mut Stream,
+        stop: &Stop<'_>,
+    ) -> Result<Self::Drawn, EnvError>;
 
     /// Begins an episode in a state whose shared parts are set.
     fn begin(&self, state: &mut Self::State, drawn: Self::Drawn);
@@ -197,10 +203,30 @@ pub trait Task: fmt::Debug + Send + Sync + Sized + 'static {
     ) -> Result<RgbImage, EnvError>;
 }
 
-/// Reward of a goal form, from positions alone \[m\]: 0 within `radius` \[m\], else −1.
-pub(crate) fn goal_reward(radius: f64, achieved: &[f32], desired: &[f32]) -> f64 {
-    let pairs = achieved.iter().zip(desired);
-    let offsets = pairs.map(|(&a, &d)| f64::from(a) - f64::from(d));
-    let distance = offsets.map(|d| d * d).sum::<f64>().sqrt();
-    if distance <= radius { 0.0 } else { -1.0 }
+/// What a goal form can achieve: positions within a square, and when they count as a goal's.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct GoalSpace {
+    /// Greatest coordinate of a position \[m\].
+    pub(crate) bound: f64,
+    /// A goal is achieved within this distance \[m\].
+    pub(crate) radius: f64,
+}
+
+impl GoalSpace {
+    /// What an episode that failed has achieved: the corner of the square, where no arm gets.
+    pub(crate) const fn failure(self) -> [f32; 2] {
+        [self.bound as f32; 2]
+    }
+
+    /// Reward from positions alone \[m\]: 0 within the radius, else −1. A failure achieves no goal,
+    /// also not the corner, which hindsight makes a goal.
+    ///
+    /// Positions are compared as the f32 numbers that an agent stores.
+    pub(crate) fn reward(self, achieved: &[f32], desired: &[f32]) -> f64 {
+        let pairs = achieved.iter().zip(desired);
+        let offsets = pairs.map(|(&a, &d)| f64::from(a) - f64::from(d));
+        let distance = offsets.map(|d| d * d).sum::<f64>().sqrt();
+        let achieves = achieved != self.failure() && distance <= self.radius;
+        if achieves { 0.0 } else { -1.0 }
+    }
 }

@@ -3,7 +3,7 @@
 mod playing;
 
 use babble_env::progress::Phase;
-use babble_env::tasks::grasp::{FACTS, GraspRequest, GraspState, Grip, at, goal_reward};
+use babble_env::tasks::grasp::{FACTS, GraspRequest, GraspState, Grip, at};
 use babble_env::{Autoreset, Batch, Control, GraspOptions, GraspTask, Outcome, Reward, Task};
 use nalgebra::Vector3;
 use playing::grasping::{
@@ -194,7 +194,7 @@ fn goal_reward_is_the_steps_reward() {
                 let there = [object.x as f32, object.y as f32];
                 assert_eq!(shown.achieved, there);
                 assert_eq!(shown.desired, goal.map(|x| x as f32));
-                let again = goal_reward(&task.config, &there, &shown.desired);
+                let again = task.goal_reward(&there, &shown.desired);
                 assert_eq!(shown.step.reward, again);
                 assert_eq!(shown.step.terms, [again, 0.0, 0.0, 0.0]);
                 assert_eq!(state.progress.is_success, again == 0.0);
@@ -249,7 +249,7 @@ fn stands_still(env: &mut Batch<GraspTask>, outcome: Outcome, towards: [f64; 4])
             env.step(&action).unwrap();
         }
         let (shown, state) = (record(env), state(env));
-        let again = goal_reward(&task.config, &shown.achieved, &shown.desired);
+        let again = task.goal_reward(&shown.achieved, &shown.desired);
         assert_eq!(shown.step.reward, again);
         assert_eq!(
             (shown.step.terminated, shown.step.truncated),

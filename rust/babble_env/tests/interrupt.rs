@@ -10,7 +10,7 @@ use babble_env::picture::View;
 use babble_env::progress::{Ending, Lifecycle, Phase, Progress};
 use babble_env::spec::{Entry, Spec};
 use babble_env::task::{MAX_TERMS, Task};
-use babble_env::{Autoreset, Batch, Config, EnvError, Executor, Outcome, Stream};
+use babble_env::{Autoreset, Batch, Config, EnvError, Executor, Outcome, Stop, Stream};
 use image::RgbImage;
 use serde::Serialize;
 
@@ -137,10 +137,13 @@ impl Task for Slow {
 
     fn derive(&self, _: &Count) {}
 
-    fn draw(&self, limited: &bool, _: &mut Stream) -> Result<(), EnvError> {
+    fn draw(&self, limited: &bool, _: &mut Stream, _: &Stop<'_>) -> Result<(), EnvError> {
         let take = |left: u32| left.checked_sub(1);
         if *limited && self.draws.fetch_update(Relaxed, Relaxed, take).is_err() {
-            return Err(EnvError::NoLegalCase { tries: 1 });
+            return Err(EnvError::NoLegalCase {
+                drawn: 1,
+                played: 1,
+            });
         }
         Ok(())
     }
@@ -260,7 +263,10 @@ fn an_interrupted_reset_leaves_the_others_alone() {
 /// Catches a batch that steps on as if the failed step had never been.
 #[test]
 fn a_failed_automatic_reset_leaves_environments_that_need_a_reset() {
-    let unplayable = Err(EnvError::NoLegalCase { tries: 1 });
+    let unplayable = Err(EnvError::NoLegalCase {
+        drawn: 1,
+        played: 1,
+    });
     let needs_reset = Err(EnvError::NeedsReset { env: 0 });
     for threads in [1, 2] {
         for autoreset in [Autoreset::SameStep, Autoreset::NextStep] {
@@ -310,7 +316,7 @@ fn making_a_batch_can_be_interrupted() {
 #[test]
 fn the_thread_that_waits_is_asked_now_and_then() {
     let mut items = [(); N];
-    let sleeping = |_: usize, (): &mut ()| {
+    let sleeping = |_: usize, (): &mut (), _: &Stop<'_>| {
         thread::sleep(STEP);
         Ok(())
     };
@@ -332,7 +338,7 @@ fn the_first_error_in_order_is_told_after_all_are_done() {
     for threads in [1, 2, 8] {
         let mut pool = after(u32::MAX, threads);
         let mut done: Vec<Option<ThreadId>> = vec![None; 64];
-        let result = pool.for_each(&mut done, 1, |i, item| {
+        let result = pool.for_each(&mut done, 1, |i, item, _| {
             thread::sleep(Duration::from_micros(if i == 20 { 3_000 } else { 100 }));
             *item = Some(thread::current().id());
             if i >= 20 {

@@ -4,7 +4,7 @@ mod playing;
 
 use babble_env::batch::Record;
 use babble_env::progress::IS_SUCCESS;
-use babble_env::tasks::reach::{CaseRequest, ObstacleRequest, at, goal_reward};
+use babble_env::tasks::reach::{CaseRequest, ObstacleRequest, at};
 use babble_env::{Autoreset, Batch, Control, Outcome, ReachOptions, ReachTask, Reward, Task};
 use playing::{Actions, batch, control, goal};
 
@@ -143,7 +143,7 @@ fn goal_reward_is_the_steps_reward() {
             1,
             1,
         );
-        let config = env.task().config.clone();
+        let task = env.task().clone();
         let mut actions = Actions::new(8);
         for k in 0..122 {
             let mut actions = actions.draw();
@@ -157,7 +157,7 @@ fn goal_reward_is_the_steps_reward() {
                     assert_eq!(shown.step.reward, 0.0);
                     continue;
                 }
-                let again = goal_reward(&config, &shown.achieved, &shown.desired);
+                let again = task.goal_reward(&shown.achieved, &shown.desired);
                 assert_eq!(shown.step.reward, again);
                 assert_eq!(shown.step.terminated, of == Control::Pattern);
                 reached += usize::from(again == 0.0);

@@ -46,7 +46,7 @@ impl Babble for GraspTask {
     type Experience = Experience;
 
     const TRIES: usize = 1;
-    const RAREST: u64 = 1_000;
+    const RAREST: u64 = 500;
 
     /// From a random posture to another. It can be learnt from if the hand kept the object, in sight
     /// of the eye.

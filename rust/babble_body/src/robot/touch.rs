@@ -1,12 +1,12 @@
 //! Contact forces of the last physics step.
 
-use super::contact_slots::SUPPORT;
+use super::contact_slots::{OBSTACLE, SUPPORT};
 use super::links::ContactRegion;
 use super::model::Robot;
 use super::world::World;
 
-/// Normal forces on the object, and whether the obstacle was hit, in one physics step. A force above
-/// zero is a contact.
+/// Normal forces on the object, and whether arm or hand met the obstacle, in one physics step. A force
+/// above zero is a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Touch {
     /// Of upper arm and forearm \[N\].
@@ -19,8 +19,10 @@ pub struct Touch {
     pub fingers: f64,
     /// Of the support \[N\].
     pub support: f64,
+    /// Of the obstacle \[N\].
+    pub obstacle: f64,
     /// Whether arm or hand touches the obstacle.
-    pub obstacle: bool,
+    pub collision: bool,
 }
 
 impl Touch {
@@ -30,10 +32,18 @@ impl Touch {
         self.arm > 0.0 || self.palm > 0.0 || self.thumb > 0.0 || self.fingers > 0.0
     }
 
-    /// Whether the object is held between fingers and thumb or fingers and palm.
+    /// Whether something helps the hand to press the object: upper arm, forearm or obstacle. An open
+    /// hand can pin an object against each of them. The support only carries it.
+    #[must_use]
+    pub fn pinned(&self) -> bool {
+        self.arm > 0.0 || self.obstacle > 0.0
+    }
+
+    /// Whether the hand has the object between fingers and thumb or fingers and palm, and nothing but
+    /// the support helps.
     #[must_use]
     pub fn encloses(&self) -> bool {
-        self.fingers > 0.0 && (self.thumb > 0.0 || self.palm > 0.0)
+        self.fingers > 0.0 && (self.thumb > 0.0 || self.palm > 0.0) && !self.pinned()
     }
 }
 
@@ -43,7 +53,8 @@ impl Robot {
     pub fn touch(&self, world: &World) -> Touch {
         let mut touch = Touch {
             support: world.mechanics.impulses[SUPPORT] / self.dt,
-            obstacle: world.mechanics.hit,
+            obstacle: world.mechanics.impulses[OBSTACLE] / self.dt,
+            collision: world.mechanics.hit,
             ..Touch::default()
         };
         for (region, impulse) in self.regions.iter().zip(world.mechanics.impulses) {

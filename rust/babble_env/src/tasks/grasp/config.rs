@@ -44,10 +44,10 @@ pub struct GraspConfig {
     /// Control steps over which a grasp must enclose the object, and over which it must then hold
     /// it without support; 20 \[C\], that is 1 s.
     pub hold_steps: u32,
-    /// Least share of physics steps with an enclosing contact before the support goes; 0.95 \[C\].
+    /// Least share of physics steps in which the hand alone encloses the object, before the support
+    /// goes; 0.95 \[C\].
     pub enclosed_share: f64,
-    /// Share of physics steps with an enclosing contact that must be exceeded after it went; 0.9
-    /// \[C\].
+    /// Share of such physics steps that must be exceeded after it went; 0.9 \[C\].
     pub held_share: f64,
     /// The object counts as in the hand when its centre is on the palm's side and at most its
     /// radius and this far from the palm's centre \[m\]; 0.06 \[C\].

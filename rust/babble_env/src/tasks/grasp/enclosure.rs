@@ -1,8 +1,14 @@
 //! When a grasp counts: enclosed, then held without support.
 //!
-//! Contact alone or nearness alone is fooled by a ball that is wedged between hand and support, so
-//! the support is taken away and the hand must keep the ball.
+//! A held object follows the hand. Contact alone or nearness alone is fooled by an object that
+//! something else helps to press. So for a second the hand must enclose it, then the support is taken
+//! away, and for another second the hand must keep it. In both seconds a contact counts only while
+//! nothing else presses the object: an open hand pins it against an obstacle, a bent elbow against the
+//! upper arm, and a curled finger against the forearm. The support may carry the object in the first
+//! second, as objects lie on it, and is gone in the second one. What is left then is the object's
+//! weight, and only forces from several sides of the hand balance that with friction.
 
+use babble_body::robot::Touch;
 use serde::{Deserialize, Serialize};
 
 use super::config::GraspConfig;
@@ -22,7 +28,8 @@ pub enum Grip {
     Failed,
 }
 
-/// In how many physics steps of a control step what touched the object.
+/// In how many physics steps of a control step what part of the hand touched the object, while neither
+/// arm nor obstacle did.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Contacts {
     /// Fingers and thumb, or fingers and palm: the hand encloses it.
@@ -31,6 +38,19 @@ pub struct Contacts {
     pub fingers: u8,
     /// Thumb or palm.
     pub opposite: u8,
+}
+
+impl Contacts {
+    /// Counts one physics step.
+    pub(super) fn add(&mut self, touch: &Touch) {
+        if touch.pinned() {
+            return;
+        }
+        let (fingers, opposite) = (touch.fingers > 0.0, touch.thumb > 0.0 || touch.palm > 0.0);
+        self.fingers += u8::from(fingers);
+        self.opposite += u8::from(opposite);
+        self.enclosing += u8::from(touch.encloses());
+    }
 }
 
 /// Watches contacts until a grasp is enclosed, tried and held.
@@ -112,6 +132,11 @@ impl Enclosure {
         };
         ensure(self.recent.iter().all(counted), || {
             format!("more contacts than {} physics steps", numbers.physics_steps)
+        })?;
+        let both =
+            |contacts: &Contacts| contacts.enclosing <= contacts.fingers.min(contacts.opposite);
+        ensure(self.recent.iter().all(both), || {
+            "an object is enclosed, and one side of the hand does not touch it".to_owned()
         })?;
         let whole = numbers.hold_steps * numbers.physics_steps;
         ensure(self.missed <= whole, || {

@@ -7,12 +7,11 @@ use super::enclosure::{Contacts, Enclosure, Grip};
 use super::sight::{self, FOVEA_NEURONS};
 use super::state::{GraspState, Moment, at, setup};
 use super::task::GraspTask;
-use crate::config::Config;
 use crate::episode::clipped;
 use crate::options::{Control, Reward};
 use crate::outcome::Outcome;
 use crate::progress::{Lifecycle, Progress};
-use crate::task::{self, MAX_TERMS};
+use crate::task::MAX_TERMS;
 
 /// Distance that the progress reward calls 1 \[m\].
 const PROGRESS_UNIT_M: f64 = 0.1;
@@ -36,11 +35,8 @@ impl Period {
         {
             *sum += force;
         }
-        let (fingers, opposite) = (touch.fingers > 0.0, touch.thumb > 0.0 || touch.palm > 0.0);
-        self.contacts.fingers += u8::from(fingers);
-        self.contacts.opposite += u8::from(opposite);
-        self.contacts.enclosing += u8::from(fingers && opposite);
-        self.collision |= touch.obstacle;
+        self.contacts.add(touch);
+        self.collision |= touch.collision;
     }
 }
 
@@ -79,7 +75,7 @@ pub(super) fn advance(
     action: &[f32],
 ) -> bool {
     // In the goal form a failure leaves everything as it is until the time limit.
-    if !state.failed() {
+    if !state.progress.outcome.is_failure() {
         state.advance(task, clipped(action));
         let scene = sight::scene(task, &state.world, &state.case);
         state.gaze = sight::follow(task, &scene, state.gaze);
@@ -87,7 +83,7 @@ pub(super) fn advance(
     }
     state.record(task);
     if task.options.goal {
-        goal_reward(&task.config, &state.achieved(task), &state.desired()) == 0.0
+        state.goal_reward(task) == 0.0
     } else {
         state.enclosure.grip == Grip::Held
     }
@@ -240,14 +236,10 @@ impl GraspState {
         }
     }
 
-    fn failed(&self) -> bool {
-        matches!(self.progress.outcome, Outcome::Collision | Outcome::Lost)
-    }
-
     pub(super) fn reward_terms(&self, task: &GraspTask, before: Potential) -> [f64; MAX_TERMS] {
         let mut terms = [0.0; MAX_TERMS];
         if task.options.goal {
-            terms[0] = goal_reward(&task.config, &self.achieved(task), &self.desired());
+            terms[0] = self.goal_reward(task);
             return terms;
         }
         let success = f64::from(u8::from(self.progress.outcome == Outcome::Success));
@@ -259,7 +251,7 @@ impl GraspState {
                     (before.distance - now.distance) / PROGRESS_UNIT_M,
                     now.enclosure - before.enclosure,
                     success,
-                    0.0 - f64::from(u8::from(self.failed())),
+                    0.0 - f64::from(u8::from(self.progress.outcome.is_failure())),
                 ];
             }
         }
@@ -269,12 +261,18 @@ impl GraspState {
     /// Where the object is; once it failed to be carried, beyond all goals, so that an object dropped
     /// at its goal earns nothing.
     pub(super) fn achieved(&self, task: &GraspTask) -> [f32; 2] {
-        let reach = task.goal_bound() as f32;
-        if task.options.goal && self.failed() {
-            return [reach; 2];
+        let space = task.goal_space();
+        if task.options.goal && self.progress.outcome.is_failure() {
+            return space.failure();
         }
+        let reach = space.bound as f32;
         let centre = task.robot.object(&self.world);
         [centre.x, centre.y].map(|x| (x as f32).clamp(-reach, reach))
+    }
+
+    fn goal_reward(&self, task: &GraspTask) -> f64 {
+        task.goal_space()
+            .reward(&self.achieved(task), &self.desired())
     }
 
     pub(super) fn desired(&self) -> [f32; 2] {
@@ -294,12 +292,4 @@ impl GraspState {
             gaze: self.gaze,
         });
     }
-}
-
-/// Reward of the goal form, from positions alone \[m\]: 0 within the success radius, else −1.
-///
-/// Positions are compared as the f32 numbers that an agent stores.
-#[must_use]
-pub fn goal_reward(config: &Config, achieved: &[f32], desired: &[f32]) -> f64 {
-    task::goal_reward(config.grasp.success_radius_m, achieved, desired)
 }

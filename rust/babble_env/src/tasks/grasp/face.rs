@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::case::{GraspCase, GraspRequest};
 use super::enclosure::Grip;
 use super::entry::ENTRY;
-use super::episode::{self, Potential, goal_reward};
+use super::episode::{self, Potential};
 use super::options::GraspOptions;
 use super::sight::FOVEA_NEURONS;
 use super::state::{GraspState, SENSES};
@@ -17,7 +17,7 @@ use super::{check, picture, protocol, spec};
 use crate::case::{CasePart, CaseValues};
 use crate::config::Config;
 use crate::error::EnvError;
-use crate::executor::Executor;
+use crate::executor::{Executor, Stop};
 use crate::outcome::Outcome;
 use crate::picture::View;
 use crate::progress::{Ending, Lifecycle, Progress};
@@ -104,8 +104,13 @@ impl Task for GraspTask {
         episode::look(self, state)
     }
 
-    fn draw(&self, request: &GraspRequest, stream: &mut Stream) -> Result<GraspCase, EnvError> {
-        request.draw(self, stream)
+    fn draw(
+        &self,
+        request: &GraspRequest,
+        stream: &mut Stream,
+        stop: &Stop<'_>,
+    ) -> Result<GraspCase, EnvError> {
+        request.draw(self, stream, stop)
     }
 
     fn begin(&self, state: &mut GraspState, case: GraspCase) {
@@ -152,7 +157,7 @@ impl Task for GraspTask {
     }
 
     fn goal_reward(&self, achieved: &[f32], desired: &[f32]) -> f64 {
-        goal_reward(&self.config, achieved, desired)
+        self.goal_space().reward(achieved, desired)
     }
 
     fn request(&self, asked: &CaseValues) -> GraspRequest {

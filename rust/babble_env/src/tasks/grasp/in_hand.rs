@@ -1,6 +1,8 @@
 //! An object put into the hand, which the enclosure reflex closes while the arm is moved about:
 //! what babbling does, and what shows how well the reflex holds.
 
+use std::collections::VecDeque;
+
 use babble_body::robot::{Ball, Setup, World, towards};
 use babble_eye::Gaze;
 
@@ -18,6 +20,9 @@ const GAP_M: f64 = 0.001;
 pub struct InHand {
     world: World,
     case: GraspCase,
+    /// Whether the hand enclosed the object in each physics step, up to the time that a grasp must be
+    /// held for; newest last.
+    enclosed: VecDeque<bool>,
 }
 
 impl InHand {
@@ -43,7 +48,11 @@ impl InHand {
             goal: None,
             obstacle: None,
         };
-        Self { world, case }
+        Self {
+            world,
+            case,
+            enclosed: VecDeque::new(),
+        }
     }
 
     /// The same in a random posture in which the object is clear of the upper arm.
@@ -76,8 +85,12 @@ impl InHand {
         let mut deepest: f64 = 0.0;
         for _ in 0..steps {
             task.robot.step(&mut self.world, &drive);
+            self.enclosed
+                .push_back(task.robot.touch(&self.world).encloses());
             deepest = deepest.max(task.robot.penetration(&self.world));
         }
+        let surplus = self.enclosed.len().saturating_sub(hold_len(task));
+        self.enclosed.drain(..surplus);
         deepest
     }
 
@@ -86,10 +99,17 @@ impl InHand {
         task.robot.remove_support(&mut self.world);
     }
 
-    /// Whether the object is before the palm and enclosed.
+    /// Whether the hand holds the object, as in an episode: the object is before the palm, and for the
+    /// time of [`GraspConfig::hold_steps`] the hand enclosed it in more than
+    /// [`GraspConfig::held_share`] of the physics steps.
+    ///
+    /// [`GraspConfig::hold_steps`]: super::GraspConfig::hold_steps
+    /// [`GraspConfig::held_share`]: super::GraspConfig::held_share
     #[must_use]
     pub fn is_held(&self, task: &GraspTask) -> bool {
-        task.in_hand(&self.world, self.case.radius()) && task.robot.touch(&self.world).encloses()
+        let enclosed = self.enclosed.iter().filter(|&&encloses| encloses).count();
+        let least = task.config.grasp.held_share * hold_len(task) as f64;
+        task.in_hand(&self.world, self.case.radius()) && enclosed as f64 > least
     }
 
     /// Angles of shoulder, elbow, thumb and finger \[rad\].
@@ -103,4 +123,10 @@ impl InHand {
     pub fn see(&self, task: &GraspTask, fovea: &mut [f32; FOVEA_NEURONS]) -> Option<Gaze> {
         see(task, &self.world, &self.case, fovea)
     }
+}
+
+/// Physics steps over which a grasp must be held.
+const fn hold_len(task: &GraspTask) -> usize {
+    let numbers = &task.config.grasp;
+    numbers.hold_steps as usize * numbers.physics_steps as usize
 }

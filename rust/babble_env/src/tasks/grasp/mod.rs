@@ -20,7 +20,7 @@ pub use case::{GraspCase, GraspRequest};
 pub use config::{GraspConfig, RegionConfig};
 pub use enclosure::{Contacts, Enclosure, Grip};
 pub(crate) use entry::ENTRY;
-pub use episode::{Potential, goal_reward};
+pub use episode::Potential;
 pub use in_hand::InHand;
 pub use options::{GraspOptions, Region};
 pub use sight::{FOVEA_NEURONS, see};

@@ -94,7 +94,7 @@ fn senses(task: &GraspTask) -> Vec<Entry> {
 }
 
 fn goals(task: &GraspTask) -> Vec<Entry> {
-    let reach = task.goal_bound();
+    let reach = task.goal_space().bound;
     let goal = |name, description| Entry {
         name,
         labels: vec!["x", "y"],
@@ -106,7 +106,7 @@ fn goals(task: &GraspTask) -> Vec<Entry> {
     vec![
         goal(
             "achieved_goal",
-            "position of the object's centre; at the bounds once it was lost",
+            "position of the object's centre; at the bounds once it failed to be carried",
         ),
         goal("desired_goal", "where it is to be carried"),
     ]

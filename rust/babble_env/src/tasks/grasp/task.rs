@@ -13,6 +13,7 @@ use crate::config::Config;
 use crate::error::EnvError;
 use crate::options::{Control, Reward};
 use crate::stream::Stream;
+use crate::task::GoalSpace;
 
 /// How often a case is drawn before the config is called impossible.
 pub(super) const MAX_TRIES: u32 = 10_000;
@@ -64,11 +65,13 @@ impl GraspTask {
         })
     }
 
-    /// Greatest coordinate of a goal \[m\]: a little beyond the arm's reach, where an object can be
-    /// pushed.
-    #[must_use]
-    pub fn goal_bound(&self) -> f64 {
-        self.arm.length() + 0.2
+    /// What the goal form can achieve: its positions lie a little beyond the arm's reach, where an
+    /// object can be pushed.
+    pub(super) fn goal_space(&self) -> GoalSpace {
+        GoalSpace {
+            bound: self.arm.length() + 0.2,
+            radius: self.config.grasp.success_radius_m,
+        }
     }
 
     /// Where objects lie and arms start.

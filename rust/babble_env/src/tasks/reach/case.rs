@@ -1,7 +1,7 @@
 //! Start, target and obstacle of one episode.
 
-use babble_body::Obstacle;
 use babble_body::visual;
+use babble_body::{ArmState, Obstacle};
 use babble_eye::Gaze;
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
@@ -10,6 +10,7 @@ use super::task::ReachTask;
 use crate::case::{CaseValue, CaseValues};
 use crate::error::EnvError;
 use crate::outcome::Outcome;
+use crate::task::GoalSpace;
 
 /// Greatest coordinate of an obstacle that a user places \[m\].
 const FAR_M: f64 = 10.0;
@@ -33,12 +34,28 @@ impl ReachCase {
     /// None where a point is out of reach, or where the arm would touch the obstacle at either end.
     #[must_use]
     pub fn between(task: &ReachTask, hand: Vector2<f64>, target: Vector2<f64>) -> Option<Self> {
+        Self::around(task, hand, target, (hand + target) / 2.0)
+    }
+
+    /// The case with obstacle and start exchanged, as on the right of Fig. 4.
+    ///
+    /// None without an obstacle, where the new start is out of reach, or where the arm would touch
+    /// the obstacle at either end.
+    #[must_use]
+    pub fn switched(&self, task: &ReachTask) -> Option<Self> {
+        let start = self.obstacle?.centre;
+        Self::around(task, start, self.target.into(), self.hand.into())
+    }
+
+    fn around(
+        task: &ReachTask,
+        hand: Vector2<f64>,
+        target: Vector2<f64>,
+        centre: Vector2<f64>,
+    ) -> Option<Self> {
         let posture = |point| task.arm.posture_at(point).filter(|&q| task.arm.in_range(q));
         let (start, end) = (posture(hand)?, posture(target)?);
-        let obstacle = Obstacle {
-            centre: (hand + target) / 2.0,
-            radius: task.config.body.obstacle.radius_m,
-        };
+        let obstacle = obstacle_at(task, centre.into());
         let clear = |q| obstacle.clearance(&task.arm, q) > 0.0;
         (clear(start) && clear(end)).then_some(Self {
             start,
@@ -112,13 +129,43 @@ pub(super) fn posture_for(
 }
 
 impl ReachTask {
-    /// Outcome of a movement that ended undisturbed in posture `q`.
+    /// Whether the task is done while the arm is like this: the fingertip is at the target, and at
+    /// rest if the options ask for that.
+    ///
+    /// The goal form compares the f32 numbers that an agent stores.
     #[must_use]
-    pub fn end_of_movement(&self, case: &ReachCase, q: [f64; 2]) -> Outcome {
-        if self.distance(case, q) <= self.config.reach.success_radius_m {
+    pub fn is_reached(&self, case: &ReachCase, arm: &ArmState) -> bool {
+        if self.options.goal {
+            let [tip, target] = self.goals(case, arm.q);
+            return self.goal_space().reward(&tip, &target) == 0.0;
+        }
+        let numbers = &self.config.reach;
+        let rested = arm.v.iter().all(|v| v.abs() < numbers.settled_speed_rad_s);
+        let near = self.distance(case, arm.q) <= numbers.success_radius_m;
+        near && (rested || !self.options.settled)
+    }
+
+    /// Outcome of a movement that ended undisturbed with the arm like this.
+    #[must_use]
+    pub fn end_of_movement(&self, case: &ReachCase, arm: &ArmState) -> Outcome {
+        if self.is_reached(case, arm) {
             Outcome::Success
         } else {
             Outcome::Timeout
+        }
+    }
+
+    /// Positions of the fingertip in a posture and of the target \[m\].
+    pub(super) fn goals(&self, case: &ReachCase, q: [f64; 2]) -> [[f32; 2]; 2] {
+        let tip: [f64; 2] = self.arm.fingertip(q).into();
+        [tip, case.target].map(|point| point.map(|x| x as f32))
+    }
+
+    /// What the goal form can achieve.
+    pub(super) fn goal_space(&self) -> GoalSpace {
+        GoalSpace {
+            bound: self.arm.length(),
+            radius: self.config.reach.success_radius_m,
         }
     }
 

@@ -125,7 +125,7 @@ const PROTOCOLS: [ProtocolEntry; 2] = [
     },
     ProtocolEntry {
         name: "fig4",
-        doc: "36 starts around each of 4 targets, where there is a case.",
+        doc: "36 starts around each of 4 targets.",
         cases: "cases of Fig. 4",
         presets: &[],
         random: false,

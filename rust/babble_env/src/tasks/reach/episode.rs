@@ -8,14 +8,14 @@ use super::movement::{Fidelity, MovementPath};
 use super::request::CaseRequest;
 use super::state::{ReachState, at};
 use super::task::ReachTask;
-use crate::config::Config;
 use crate::episode::clipped;
 use crate::error::EnvError;
+use crate::executor::Stop;
 use crate::options::{Control, Reward};
 use crate::outcome::Outcome;
 use crate::progress::{Lifecycle, Progress};
 use crate::stream::Stream;
-use crate::task::{self, MAX_TERMS};
+use crate::task::MAX_TERMS;
 
 /// Distance that the progress reward calls 1 \[m\].
 const PROGRESS_UNIT_M: f64 = 0.1;
@@ -77,8 +77,9 @@ pub(super) fn draw(
     task: &ReachTask,
     request: &CaseRequest,
     stream: &mut Stream,
+    stop: &Stop<'_>,
 ) -> Result<Drawn, EnvError> {
-    let case = request.draw(task, stream)?;
+    let case = request.draw(task, stream, stop)?;
     let gaze = task.foveate(&case)?;
     Ok(Drawn { case, gaze })
 }
@@ -103,8 +104,8 @@ pub(super) fn advance(
     action: &[f32],
 ) -> Result<bool, EnvError> {
     let action = clipped(action);
-    // In the goal form a collision holds the arm where it is until the time limit.
-    if state.progress.outcome != Outcome::Collision {
+    // In the goal form a failure holds the arm where it is until the time limit.
+    if !state.progress.outcome.is_failure() {
         state.progress.outcome = match task.options.control {
             Control::Pattern => play(task, state, action)?,
             _ => move_arm(task, state, action),
@@ -113,13 +114,7 @@ pub(super) fn advance(
         state.trail.push(state.arm.q);
     }
     state.distance = task.distance(&state.case, state.arm.q);
-    let fastest = task.config.reach.settled_speed_rad_s;
-    let rested = state.arm.v.iter().all(|v| v.abs() < fastest);
-    Ok(if task.options.goal {
-        goal_reached(task, state)
-    } else {
-        state.distance <= task.config.reach.success_radius_m && (rested || !task.options.settled)
-    })
+    Ok(task.is_reached(&state.case, &state.arm))
 }
 
 pub(super) fn observe(task: &ReachTask, state: &ReachState, sight: &Sight, out: &mut [f32]) {
@@ -137,10 +132,14 @@ pub(super) fn observe(task: &ReachTask, state: &ReachState, sight: &Sight, out: 
     out[at::TIME] = (f64::from(state.progress.steps) / limit).min(1.0) as f32;
 }
 
-/// Positions of fingertip and target \[m\].
+/// Positions of fingertip and target \[m\]. Once the arm failed, the first is none that it can take,
+/// so that an arm that collided at its target earns nothing.
 pub(super) fn goals(task: &ReachTask, state: &ReachState) -> [[f32; 2]; 2] {
-    let tip: [f64; 2] = task.arm.fingertip(state.arm.q).into();
-    [tip, state.case.target].map(|point| point.map(|x| x as f32))
+    let [tip, target] = task.goals(&state.case, state.arm.q);
+    if state.progress.outcome.is_failure() {
+        return [task.goal_space().failure(), target];
+    }
+    [tip, target]
 }
 
 fn play(task: &ReachTask, state: &mut ReachState, action: [f64; 2]) -> Result<Outcome, EnvError> {
@@ -155,7 +154,13 @@ fn play(task: &ReachTask, state: &mut ReachState, action: [f64; 2]) -> Result<Ou
     });
     state.arm = movement.arm;
     state.equilibrium = path.postures().last().copied().unwrap_or(state.equilibrium);
-    Ok(movement.outcome)
+    // Success and timeout are for the end of the step to tell.
+    let failed = movement.outcome.is_failure();
+    Ok(if failed {
+        movement.outcome
+    } else {
+        Outcome::Running
+    })
 }
 
 fn move_arm(task: &ReachTask, state: &mut ReachState, action: [f64; 2]) -> Outcome {
@@ -192,28 +197,12 @@ fn move_arm(task: &ReachTask, state: &mut ReachState, action: [f64; 2]) -> Outco
     }
 }
 
-/// Reward of the goal form, from positions alone \[m\]: 0 within the success radius, else −1.
-///
-/// Positions are compared as the f32 numbers that an agent stores.
-#[must_use]
-pub fn goal_reward(config: &Config, achieved: &[f32], desired: &[f32]) -> f64 {
-    task::goal_reward(config.reach.success_radius_m, achieved, desired)
-}
-
-fn goal_reached(task: &ReachTask, state: &ReachState) -> bool {
-    let [achieved, desired] = goals(task, state);
-    goal_reward(&task.config, &achieved, &desired) == 0.0
-}
-
 pub(super) fn reward_terms(task: &ReachTask, state: &ReachState, before: f64) -> [f64; MAX_TERMS] {
     let success = f64::from(u8::from(state.progress.outcome == Outcome::Success));
-    let failure = f64::from(u8::from(matches!(
-        state.progress.outcome,
-        Outcome::Collision | Outcome::JointLimit
-    )));
+    let failure = f64::from(u8::from(state.progress.outcome.is_failure()));
     if task.options.goal {
-        let term = if goal_reached(task, state) { 0.0 } else { -1.0 };
-        return [term, 0.0, 0.0, 0.0];
+        let [achieved, desired] = goals(task, state);
+        return [task.goal_space().reward(&achieved, &desired), 0.0, 0.0, 0.0];
     }
     match task.options.reward {
         Reward::Progress => [

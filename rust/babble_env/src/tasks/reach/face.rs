@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::config::ReachConfig;
 use super::entry::ENTRY;
-use super::episode::{self, Drawn, Sight, goal_reward};
+use super::episode::{self, Drawn, Sight};
 use super::options::ReachOptions;
 use super::request::CaseRequest;
 use super::state::{ReachState, SENSES};
@@ -17,7 +17,7 @@ use super::{check, picture, protocol, spec};
 use crate::case::{CasePart, CaseValues};
 use crate::config::Config;
 use crate::error::EnvError;
-use crate::executor::Executor;
+use crate::executor::{Executor, Stop};
 use crate::options::Control;
 use crate::outcome::Outcome;
 use crate::picture::View;
@@ -123,8 +123,13 @@ impl Task for ReachTask {
         Sight::new(self, state)
     }
 
-    fn draw(&self, request: &CaseRequest, stream: &mut Stream) -> Result<Drawn, EnvError> {
-        episode::draw(self, request, stream)
+    fn draw(
+        &self,
+        request: &CaseRequest,
+        stream: &mut Stream,
+        stop: &Stop<'_>,
+    ) -> Result<Drawn, EnvError> {
+        episode::draw(self, request, stream, stop)
     }
 
     fn begin(&self, state: &mut ReachState, drawn: Drawn) {
@@ -167,7 +172,7 @@ impl Task for ReachTask {
     }
 
     fn goal_reward(&self, achieved: &[f32], desired: &[f32]) -> f64 {
-        goal_reward(&self.config, achieved, desired)
+        self.goal_space().reward(achieved, desired)
     }
 
     fn request(&self, asked: &CaseValues) -> CaseRequest {

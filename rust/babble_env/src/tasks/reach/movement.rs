@@ -121,7 +121,7 @@ impl MovementPath {
         let outcome = if self.violates {
             Outcome::JointLimit
         } else {
-            task.end_of_movement(case, arm.q)
+            task.end_of_movement(case, &arm)
         };
         Movement {
             outcome,
@@ -142,21 +142,19 @@ impl MovementPath {
         for &q in &self.postures[..played] {
             each(&ArmState::at_rest(q));
         }
-        let q = self.postures[..played]
-            .last()
-            .copied()
-            .unwrap_or(case.start);
+        let last = self.postures[..played].last();
+        let arm = ArmState::at_rest(last.copied().unwrap_or(case.start));
         let outcome = if touch.is_some() {
             Outcome::Collision
         } else if self.violates {
             Outcome::JointLimit
         } else {
-            task.end_of_movement(case, q)
+            task.end_of_movement(case, &arm)
         };
         Movement {
             outcome,
             time_s: played as f64 * period,
-            arm: ArmState::at_rest(q),
+            arm,
         }
     }
 

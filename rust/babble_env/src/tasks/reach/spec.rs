@@ -98,7 +98,7 @@ fn senses(task: &ReachTask) -> Vec<Entry> {
 }
 
 fn goals(task: &ReachTask) -> Vec<Entry> {
-    let reach = task.arm.length();
+    let reach = task.goal_space().bound;
     let goal = |name, description| Entry {
         name,
         labels: vec!["x", "y"],
@@ -108,7 +108,10 @@ fn goals(task: &ReachTask) -> Vec<Entry> {
         description,
     };
     vec![
-        goal("achieved_goal", "position of the fingertip"),
+        goal(
+            "achieved_goal",
+            "position of the fingertip; at the bounds once the arm failed",
+        ),
         goal("desired_goal", "position of the target"),
     ]
 }

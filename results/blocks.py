@@ -1,0 +1,295 @@
+"""The tables between `<!-- results: NAME -->` and `<!-- end -->` in the pages."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from gym_babble.paper.table2 import PAPER_TABLE_II
+from gym_babble.study.rates import paper_tally, share
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+
+    from results.stores import Stores
+
+OUTCOMES = ("success", "collision", "joint_limit")
+PANELS = ("halfway", "switched")
+SIZES = {"small": "2.4 cm", "big": "6 cm"}
+
+
+def markdown(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A Markdown table."""
+    lines = [heads, ["---"] * len(heads), *rows]
+    return "".join(f"| {' | '.join(cells)} |\n" for cells in lines)
+
+
+def span(low: float, high: float) -> str:
+    """A range of rates."""
+    return f"{share(low)}–{share(high)}"
+
+
+def interval(rate: dict[str, float]) -> str:
+    """The 95 % interval of one seed's rate."""
+    return span(rate["low"], rate["high"])
+
+
+PAPER_ROW = ["20,000", *(share(paper_tally()[name]["rate"]) for name in OUTCOMES), "≈ .20"]
+
+
+def _table1_cells(run: dict[str, Any]) -> list[str]:
+    """Success, range of seeds, collision, joint limit, legal."""
+    found = run["over_seeds"]
+    success, collision, limit = (found[name] for name in OUTCOMES)
+    return [
+        share(success["mean"]),
+        span(success["min"], success["max"]),
+        *(share(rate["mean"]) for rate in (collision, limit, found["legal_rate"])),
+    ]
+
+
+def table1_short(stores: Stores) -> str:
+    """The README's rows of Table I."""
+    rows = [["paper", PAPER_ROW[1], "", *PAPER_ROW[2:]]]
+    for title, run in (
+        ("Hebb `paper`, body `paper`", "paper"),
+        ("Hebb `conjunctive`, body `paper`", "conjunctive"),
+        ("Hebb `conjunctive`, after 250 movements", "conjunctive-250"),
+        ("Hebb `conjunctive`, body `icub`", "conjunctive-icub"),
+    ):
+        rows.append([title, *_table1_cells(stores["table1"][run])])
+    return markdown(["", "success", "seeds", "collision", "joint limit", "legal"], rows)
+
+
+def table1(stores: Stores) -> str:
+    """Table I of both variants and bodies."""
+    rows = [["the paper", "", *PAPER_ROW[:2], "", *PAPER_ROW[2:]]]
+    runs = ("paper", "paper-icub", "conjunctive", "conjunctive-250")
+    for run in (*runs, "conjunctive-icub", "conjunctive-icub-250"):
+        found = stores["table1"][run]
+        about = [f"`{found['variant']}`", found["config"], f"{found['movements']:,}"]
+        rows.append([*about, *_table1_cells(found)])
+    heads = ["agent", "body", "movements", "success", "seeds", "collision", "joint limit", "legal"]
+    return markdown(heads, rows)
+
+
+def fig4(stores: Stores) -> str:
+    """How many movements of Fig. 4 reach the target, beside agents that learnt nothing."""
+    found = stores["fig4"]["paper"]
+    titles = {
+        "agent": "Hebb `paper`",
+        "straight": "straight movement, b1 = ½",
+        "random": "random b1",
+        "scripted": "curve to the shoulder",
+    }
+    rows = [
+        [title, *(f"{found['reached'][name][panel]} of {found['cases']}" for panel in PANELS)]
+        for name, title in titles.items()
+    ]
+    return markdown(["agent", "obstacle halfway", "switched"], rows)
+
+
+def sensitivity(stores: Stores) -> str:
+    """Table I with one number changed."""
+    rows = [
+        [row["change"], *(share(row[name]) for name in (*OUTCOMES, "legal_rate"))]
+        for row in stores["sensitivity"]["rows"]
+    ]
+    return markdown(["change", "success", "collision", "joint limit", "legal"], rows)
+
+
+TESTS = {"table2": "Table II's grid", "palm_side": "region `palm_side`", "full": "region `full`"}
+
+
+def table2_short(stores: Stores) -> str:
+    """The README's rows of Table II: both sizes in a cell."""
+    paper = [" / ".join(share(PAPER_TABLE_II[s][f]) for s in SIZES) for f in ("reach", "held")]
+    rows = [["paper, small / big, 144 tests each", *paper]]
+    sizes = stores["table2"]["paper"]["sizes"]
+    for protocol, title in TESTS.items():
+        means = [size["tests"][protocol]["over_seeds"] for size in sizes]
+        cells = [" / ".join(share(mean[f]["mean"]) for mean in means) for f in ("reach", "held")]
+        rows.append([f"ours, 2.4 / 6 cm, {title}", *cells])
+    return markdown(["", "any part touches", "grasped"], rows)
+
+
+def table2(stores: Stores) -> str:
+    """Reaching and grasping in the tests of Table II and in the regions."""
+    paper = [
+        ["paper", size, "144", share(known["reach"]), "", share(known["held"])]
+        for size, known in PAPER_TABLE_II.items()
+    ]
+    return _table2(paper, stores["table2"]["paper"])
+
+
+def table2_rapier(stores: Stores) -> str:
+    """The same by the other engine."""
+    return _table2([], stores["table2_rapier"]["rapier"])
+
+
+def _table2(rows: list[list[str]], found: dict[str, Any]) -> str:
+    rows = list(rows)
+    for protocol, title in TESTS.items():
+        for size in found["sizes"]:
+            tests = size["tests"][protocol]
+            number = sum(seed["cases"] for seed in tests["by_seed"])
+            rates = [tests["over_seeds"][fact] for fact in ("reach", "palm_reach", "held")]
+            cells = [f"{share(rate['mean'])} ({span(rate['min'], rate['max'])})" for rate in rates]
+            rows.append([title, f"{100 * size['diameter']:g} cm", f"{number:,}", *cells])
+    heads = ["tests", "size", "number", "any part touches", "palm touches", "grasped"]
+    return markdown(heads, rows)
+
+
+def hands(stores: Stores) -> str:
+    """The learned equilibrium points beside the paper's."""
+    sizes = stores["table2"]["paper"]["sizes"]
+    rows = []
+    for digit, name in (("thumb", "thumb"), ("finger", "index")):
+        learned, ideal = [f"{name}: learned EP ± spread"], [f"{name}: ideal, and babbled"]
+        for known, size in zip(PAPER_TABLE_II.values(), sizes, strict=True):
+            theirs, ours = known[digit], size["hand"][digit]
+            learned.append(f"{theirs['mean']:.2f} ± {theirs['spread']:.3f}")
+            learned.append(f"{ours['mean']:.2f} ± {ours['spread']:.2f}")
+            ideal.append(f"{theirs['ideal']:.0f}")
+            ideal.append(f"{ours['babbled_mean']:.2f} ± {ours['babbled_spread']:.2f}")
+        rows += [learned, ideal]
+    heads = ["", "paper, small", "ours, 2.4 cm", "paper, big", "ours, 6 cm"]
+    return markdown(heads, rows)
+
+
+def holding(stores: Stores) -> str:
+    """The reflex alone, in Table II's run."""
+    rows = [
+        [
+            f"{100 * rate['diameter']:g}",
+            f"{rate['held']} of {rate['trials']}",
+            interval(rate),
+            f"{rate['penetration_mm']:.1f}",
+        ]
+        for rate in stores["table2"]["paper"]["hold"]
+    ]
+    return markdown(["diameter [cm]", "held", "95 %", "deepest [mm]"], rows)
+
+
+def sizes(stores: Stores) -> str:
+    """Which sizes the hand holds, and what the fovea sees of them."""
+    rows = []
+    for found in stores["sizes"]["tree"]:
+        thumb, finger = found["flexion_deg"]
+        rows.append(
+            [
+                f"{100 * found['diameter']:g}",
+                share(found["rate"]),
+                interval(found),
+                f"{thumb:.0f}, {finger:.0f}",
+                f"{found['edges']} of 441",
+            ]
+        )
+    heads = ["diameter [cm]", "held", "95 %", "flexion thumb, finger [°]", "edges in the fovea"]
+    return markdown(heads, rows)
+
+
+def engines(stores: Stores) -> str:
+    """Balls held, of 100, by both engines and by independent fingers."""
+    runs = {
+        name: [rate for rate in found if rate["diameter"] <= 0.08]
+        for name, found in stores["sizes"].items()
+    }
+    held = {name: [str(rate["held"]) for rate in found] for name, found in runs.items()}
+    deepest = {
+        name: [f"{rate['penetration_mm']:.2f}" for rate in found] for name, found in runs.items()
+    }
+    rows = [
+        ["`tree` holds", *held["tree"]],
+        ["deepest [mm]", *deepest["tree"]],
+        ["`tree`, independent fingers", *held["independent"]],
+        ["`rapier` holds", *held["rapier"]],
+        ["deepest [mm]", *deepest["rapier"]],
+    ]
+    diameters = [f"{100 * rate['diameter']:g}" for rate in runs["tree"]]
+    table = markdown(["diameter [cm]", *diameters], rows)
+    return "".join(f"  {line}\n" for line in table.splitlines())
+
+
+def sides(stores: Stores) -> str:
+    """Success by the side on which the hand starts."""
+    found = stores["sides"]["scripted"]
+    rows = [
+        [
+            f"{row['low']:.0f} to {row['high']:.0f}".replace("-", "−") if "low" in row else "all",
+            f"{row['cases']:,}",
+            share(row["palm_reach"]),
+            share(row["held"]),
+        ]
+        for row in (*found["rows"], found["all"])
+    ]
+    heads = ["object's direction minus start shoulder [°]", "cases", "palm touches", "grasped"]
+    return markdown(heads, rows)
+
+
+def interference(stores: Stores) -> str:
+    """What small objects, big ones, and both teach."""
+    rows = []
+    for row in stores["interference"]["rows"]:
+        cells = [
+            f"{mean:.2f} ± {spread:.2f}".replace("-", "−")
+            for mean, spread in zip(row["mean"], row["spread"], strict=True)
+        ]
+        cells += [
+            ", ".join(f"{ep:.1f}" for ep in row[name]) if row[name] else "–, –"
+            for name in ("babbled", "in_hand")
+        ]
+        rows.append([row["babbled_with"], f"{100 * row['diameter']:g} cm", *cells])
+    heads = ["babbled with", "object", "gap [cm]", "thumb EP [°]", "finger EP [°]", "babbled"]
+    return markdown([*heads, "recalled in the hand"], rows)
+
+
+def ppo_reach(stores: Stores) -> str:
+    """PPO's presets in reaching."""
+    more = ("collision", "joint_limit", "timeout")
+    learnt = ("movements", "control_steps", "seconds", "processor_seconds")
+    rows = [
+        [
+            found["preset"],
+            f"{found['steps']:,}",
+            *_mean_and_range(found),
+            *(share(found[name]["mean"]) for name in more),
+            *(f"{found[name]:,.0f}" for name in learnt),
+        ]
+        for found in stores["ppo_reach"].values()
+    ]
+    heads = ["preset", "steps", "success", "seeds", *more, *learnt]
+    return markdown([head.replace("_", " ") for head in heads], rows)
+
+
+def _mean_and_range(found: dict[str, Any]) -> list[str]:
+    success = found["success"]
+    return [share(success["mean"]), f"{found['seeds']}: {span(success['min'], success['max'])}"]
+
+
+def grasping(stores: Stores) -> str:
+    """The agents of grasping on `palm_side` cases."""
+    (ppo,), hebb = stores["ppo_grasp"].values(), stores["grasp"]["hebb"]["agents"][0]["test"]
+    rows = [
+        _grasping_row(f"PPO `grasp`, {ppo['steps']:,} steps", _mean_and_range(ppo), ppo, "mean"),
+        _grasping_row("`HebbBabbling`, 1,000 babbles", _mean_and_range(hebb), hebb, "mean"),
+    ]
+    for title, run in (("`Scripted`", "grasp-scripted"), ("`Random`", "grasp-random")):
+        found = stores["references"][run]
+        success = found["success"]
+        cells = [share(success["rate"]), f"1: [{interval(success)}]"]
+        rows.append(_grasping_row(title, cells, found, "rate"))
+    heads = ["agent", "success", "seeds", *SIZES.values(), "lost", "timeout"]
+    return markdown([*heads, "any part touches", "palm touches"], rows)
+
+
+def _grasping_row(title: str, cells: list[str], found: dict[str, Any], key: str) -> list[str]:
+    of_size = [found["by_size"].get(size) for size in SIZES.values()]
+    split = [share(part["success"][key]) if part else "–" for part in of_size]
+    rest = [share(found[name][key]) for name in ("lost", "timeout", "reach", "palm_reach")]
+    return [title, *cells, *split, *rest]
+
+
+BLOCKS: dict[str, Callable[[Stores], str]] = {
+    block.__name__: block for block in (table1_short, table1, fig4, ppo_reach)
+}
+"""The tables by name."""

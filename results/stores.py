@@ -1,0 +1,127 @@
+"""The stored results: the commands behind each file, and a look into it."""
+
+from __future__ import annotations
+
+import json
+from collections import defaultdict
+from pathlib import Path
+from statistics import fmean
+from typing import Any
+
+from gym_babble.study.rates import counted, over_seeds, paper_tally
+from gym_babble.study.stored import Study
+
+ROOT = Path(__file__).resolve().parent.parent
+FOLDER = ROOT / "results"
+
+TABLE1 = "gym-babble reproduce table1 --seeds 5"
+REACHING = "--env-id BabbleReachPattern-v0"
+RAPIER = "python examples/grasp_sizes.py --engine rapier"
+STEPS = "--env-id BabbleReach-v0"
+GRASPING = "--env-id BabbleGrasp-v0"
+
+STORES: dict[str, dict[str, str]] = {
+    "table1": {
+        "paper": TABLE1,
+        "paper-icub": f"{TABLE1} --config icub",
+        "paper-steps": f"{TABLE1} --control delta_posture",
+        "conjunctive": f"{TABLE1} --variant conjunctive",
+        "conjunctive-250": f"{TABLE1} --variant conjunctive --movements 250",
+        "conjunctive-icub": f"{TABLE1} --variant conjunctive --config icub",
+        "conjunctive-icub-250": f"{TABLE1} --variant conjunctive --config icub --movements 250",
+        "paper-4000": f"{TABLE1} --movements 4000",
+        "conjunctive-4000": f"{TABLE1} --variant conjunctive --movements 4000",
+        "conjunctive-steps": f"{TABLE1} --variant conjunctive --control delta_posture",
+    },
+    "references": {
+        "random": f"gym-babble evaluate random {REACHING}",
+        "scripted": f"gym-babble evaluate scripted {REACHING}",
+        "oracle": f"gym-babble evaluate oracle {REACHING}",
+        "scripted-steps": f"gym-babble evaluate scripted {STEPS}",
+        "grasp-random": f"gym-babble evaluate random {GRASPING}",
+        "grasp-scripted": f"gym-babble evaluate scripted {GRASPING}",
+    },
+    "own": {
+        "curves": "python examples/curves.py",
+        "rules": "python examples/own_rule.py --movements 2000",
+    },
+    "fig4": {"paper": "gym-babble reproduce fig4"},
+    "fig5": {"paper": "gym-babble reproduce fig5"},
+}
+"""For each store its runs, each with its command; `--json` is added."""
+
+STUDIES = {
+    "ppo_reach": ROOT / "docs" / "studies" / "ppo_reach.json",
+    "ppo_grasp": ROOT / "gym_babble" / "study" / "results" / "ppo_grasp.json",
+}
+"""Stores that examples/ppo_study.py writes."""
+
+LEARNT_FROM = ("movements", "control_steps", "seconds", "processor_seconds")
+
+
+def path_of(name: str) -> Path:
+    """The file of a store."""
+    return STUDIES.get(name, FOLDER / f"{name}.json")
+
+
+def of_study(path: Path) -> dict[str, Any]:
+    """Means and ranges over the seeds of each preset and length, by names like `grasp-2500000`."""
+    groups = defaultdict(list)
+    for run in Study.read(path).runs:
+        groups[f"{run.preset}-{run.steps}"].append(run)
+    return {
+        name: {
+            "preset": runs[0].preset,
+            "steps": runs[0].steps,
+            **_over_runs([run.counts for run in runs]),
+            "by_size": {
+                size: _over_runs([run.by_size[size] for run in runs]) for size in runs[0].by_size
+            },
+            **{what: fmean(getattr(run, what) for run in runs) for what in LEARNT_FROM},
+        }
+        for name, runs in groups.items()
+    }
+
+
+def _over_runs(counts: list[dict[str, int]]) -> dict[str, Any]:
+    names = [name for name in counts[0] if name != "cases"]
+    return over_seeds([counted(one) for one in counts], names)
+
+
+def derived(stores: Stores) -> dict[str, float]:
+    """Numbers that several stored ones give."""
+    ours = stores["table1"]["paper"]["over_seeds"]["success"]["mean"]
+    return {
+        "above_paper": ours - paper_tally()["success"]["rate"],
+    }
+
+
+class Stores(dict[str, Any]):
+    """The stores by name: what each run printed, or the study. They are read when needed."""
+
+    def __missing__(self, name: str) -> Any:
+        """Reads a store."""
+        if name == "derived":
+            self[name] = derived(self)
+        elif name in STUDIES:
+            self[name] = of_study(STUDIES[name])
+        else:
+            stored = json.loads(path_of(name).read_text(encoding="utf-8"))
+            self[name] = {run: found["printed"] for run, found in stored["runs"].items()}
+        return self[name]
+
+    def find(self, path: str) -> Any:
+        """The value at a path such as `table1/paper/by_seed/0/success/rate`.
+
+        A part of the form `name=value` selects the item of a list that has this value.
+        """
+        value: Any = self
+        for part in path.split("/"):
+            key, equals, wanted = part.partition("=")
+            if equals:
+                value = next(item for item in value if str(item[key]) == wanted)
+            elif isinstance(value, list):
+                value = value[int(part)]
+            else:
+                value = value[part]
+        return value

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import re
+import time
 from dataclasses import asdict, fields, is_dataclass, replace
 
 import numpy as np
 import pytest
 
-from gym_babble import Config, _core, scenarios
+from gym_babble import Config, HebbBabbling, _core, scenarios
 from gym_babble.config import (
     Arm,
     Cylinder,
@@ -418,6 +420,66 @@ def test_a_config_with_no_room_for_a_case_says_so():
         env.reset(seed=0)
     with pytest.raises(BabbleError, match="no legal movement"):
         scenarios("table1", 1, config=config)
+
+
+# Bodies with which nothing can be done: there is no case, or no movement is legal, or the
+# hand keeps no object.
+HOPELESS = {
+    "no joint range": {
+        "body": {
+            "joints": {
+                "shoulder": {"lower_deg": 0, "upper_deg": 2},
+                "elbow": {"lower_deg": 10, "upper_deg": 12},
+            }
+        }
+    },
+    "a thick arm": {"body": {"arm": {"half_width_m": 0.05}, "obstacle": {"radius_m": 0.05}}},
+    "straight movements": {
+        "body": {"obstacle": {"radius_m": 0.03}},
+        "reach": {"b_range": [0.4999, 0.5001]},
+    },
+}
+PROMPTLY_S = 2.0
+"""Processor time until a hopeless body says so."""
+
+
+def promptly(call, named):
+    """Its error tells what was tried, within a few seconds."""
+    began = time.process_time()
+    with pytest.raises(BabbleError, match=named) as caught:
+        call()
+    assert time.process_time() - began < PROMPTLY_S
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("name", HOPELESS)
+def test_a_hopeless_body_says_so_in_seconds(name):
+    config = HOPELESS[name]
+    for control in ("delta_posture", "pattern"):
+        env = BabbleReachEnv(config=config, control=control)
+        said = promptly(lambda env=env: env.reset(seed=0), "no legal movement: of")
+        drawn, played = map(int, re.findall(r"of (\d+) random .* ends of (\d+)", said)[0])
+        assert drawn > 0
+        assert drawn == 1_000_000 or played > 0
+    promptly(lambda: scenarios("table1", 2, config=config), "no legal movement: of")
+    env = BabbleReachEnv(config=config, control="pattern")
+    for fast in (True, False):
+        agent = HebbBabbling(env, quasi_static=fast, threads=1)
+        promptly(lambda agent=agent: agent.learn(10), "no legal movement|only 0 of")
+        assert (agent.babbled, agent.learnt) == (0, 0)
+
+
+def test_a_hopeless_hand_says_so_in_seconds():
+    # Balls that slip out of the hand.
+    slippery = {"body": {"object": {"friction": 0.0, "support_friction": 0.0}}}
+    crossed = {"body": {"grip": {"reflex_deg": [0.0, 1.0]}}}
+    for config in (slippery, crossed):
+        agent = HebbBabbling(BabbleGraspEnv(config=config), threads=1)
+        promptly(lambda agent=agent: agent.learn(10), "only 0 of 5.. babbles")
+    region = {"radius_m": [0.01, 0.011], "polar_deg": [-5, 5]}
+    nowhere = {"grasp": {"palm_side": region, "full": region}}
+    for protocol in ("palm_side", "full"):
+        promptly(lambda p=protocol: scenarios(p, 2, config=nowhere), "no case in 10000 tries")
 
 
 def test_a_config_with_no_room_for_a_grasp_says_so():

@@ -10,7 +10,9 @@ use babble_env::picture::View;
 use babble_env::progress::{Ending, Lifecycle, Phase, Progress};
 use babble_env::spec::{Entry, Spec};
 use babble_env::task::{MAX_TERMS, Task};
-use babble_env::{Autoreset, Batch, Config, EnvError, Executor, Outcome, Stop, Stream};
+use babble_env::{
+    Autoreset, Batch, Config, EnvError, Executor, Outcome, ReachOptions, ReachTask, Stop, Stream,
+};
 use image::RgbImage;
 use serde::Serialize;
 
@@ -235,6 +237,16 @@ fn an_interrupted_step_leaves_environments_that_need_a_reset() {
     }
 }
 
+/// Environments of an arm so thick that no movement is legal, each of which takes long to try.
+fn hopeless(n: usize, executor: Executor) -> Batch<ReachTask> {
+    let config = Config::from_json(
+        r#"{"body": {"arm": {"half_width_m": 0.05}, "obstacle": {"radius_m": 0.05}},
+            "reach": {"control_period_s": 0.001, "movement_s": 8}}"#,
+    );
+    let task = ReachTask::new(config.unwrap(), ReachOptions::default()).unwrap();
+    Batch::with_executor(Arc::new(task), n, Autoreset::NextStep, executor).unwrap()
+}
+
 /// After an interrupted reset those that it chose need another; the others step on. Catches episodes
 /// that go on beside half of a new batch.
 #[test]
@@ -255,6 +267,24 @@ fn an_interrupted_reset_leaves_the_others_alone() {
         ASKED.set((0, u32::MAX));
         batch.reset(&mask).unwrap();
         batch.step(&[1.0; N]).unwrap();
+    }
+}
+
+/// A search that takes a second is interrupted in its middle, of one environment too, and needs another
+/// reset. Catches a draw that nobody asks.
+#[test]
+fn an_interrupted_draw_ends_at_once() {
+    for (n, threads) in [(1, 1), (3, 1), (3, 2)] {
+        let mut calm = hopeless(n, Executor::new(threads).unwrap());
+        let began = Instant::now();
+        let searched = calm.reset(&vec![true; n]);
+        let whole = began.elapsed();
+        assert!(matches!(searched, Err(EnvError::NoLegalCase { .. })));
+        assert!(whole > Duration::from_millis(150), "{whole:?}");
+        let mut hasty = hopeless(n, after(0, threads));
+        let began = Instant::now();
+        assert_eq!(hasty.reset(&vec![true; n]), Err(EnvError::Interrupted));
+        assert!(began.elapsed() < whole / 2, "{:?}", began.elapsed());
     }
 }
 

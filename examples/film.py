@@ -7,6 +7,7 @@ python examples/film.py --out docs/images/babble.gif    # about half a minute
 """
 
 import argparse
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,8 @@ import numpy as np
 from PIL import Image
 
 from gym_babble import HebbBabbling, scenarios
-from gym_babble.agents.loading import LoadedAgent
+from gym_babble.agents.loading import acting_agent
+from gym_babble.files import check_file, write_file
 from gym_babble.viz.film import Film, record
 
 SIZE = 560
@@ -36,15 +38,17 @@ def shows(case: dict[str, Any]) -> tuple[float, ...]:
     return case["diameter"], float(np.arctan2(y, x) - case["start"][0])
 
 
-def film(agent: HebbBabbling, env_id: str, cases: list[Any]) -> Film:
+def film(agent: HebbBabbling, cases: list[Any]) -> Film:
     """The success that shows most."""
-    loaded = LoadedAgent(agent, env_id, "paper")
+    loaded = acting_agent(agent)
     for case in sorted(cases, key=shows, reverse=True):
         one = record(loaded, options={"scenario": case}, size=SIZE)
         if one.outcome == "success":
-            print(f"{env_id}: case {case['index']} of {case['protocol']}")
+            print(f"case {case['index']} of {case['protocol']}")
             return one
-    raise SystemExit(f"{env_id}: none of {len(cases)} cases was a success: learn more")
+    raise SystemExit(
+        f"none of {len(cases)} cases of {cases[0]['protocol']} was a success: learn more"
+    )
 
 
 def side_by_side(films: list[Film]) -> list[Image.Image]:
@@ -67,17 +71,20 @@ def main() -> None:
     parser.add_argument("--babbles", type=int, default=1_000, help="babbles of grasping to learn")
     parser.add_argument("--cases", type=int, default=20, help="test cases to choose from")
     arguments = parser.parse_args()
+    check_file(arguments.out, "--out")
     reaching = HebbBabbling("BabbleReachPattern-v0", "conjunctive", seed=0)
     reaching.learn(arguments.movements, progress_bar=True)
     grasping = HebbBabbling("BabbleGrasp-v0", seed=0)
     grasping.learn(arguments.babbles, progress_bar=True)
     films = [
-        film(reaching, "BabbleReachPattern-v0", scenarios("table1", arguments.cases)),
-        film(grasping, "BabbleGrasp-v0", scenarios("palm_side", arguments.cases)),
+        film(reaching, scenarios("table1", arguments.cases)),
+        film(grasping, scenarios("palm_side", arguments.cases)),
     ]
     first, *rest = side_by_side(films)
-    first.save(arguments.out, save_all=True, append_images=rest, duration=100, loop=0)
-    print(f"{arguments.out}: {arguments.out.stat().st_size / 1e3:.0f} kB")
+    gif = BytesIO()
+    first.save(gif, "GIF", save_all=True, append_images=rest, duration=100, loop=0)
+    write_file(arguments.out, gif.getvalue())
+    print(f"{arguments.out}: {len(gif.getvalue()) / 1e3:.0f} kB")
 
 
 if __name__ == "__main__":

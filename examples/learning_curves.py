@@ -6,6 +6,7 @@ python examples/learning_curves.py --out docs/images/learning.png    # about two
 import argparse
 from pathlib import Path
 
+from gym_babble.files import check_file
 from gym_babble.study.compare import compare
 from gym_babble.study.contenders import Settings
 from gym_babble.viz import style
@@ -19,13 +20,15 @@ parser.add_argument("--agents", nargs="+", default=AGENTS, help="as in gym-babbl
 parser.add_argument("--movements", type=int, default=20_000, help="legal movements of a Hebb agent")
 parser.add_argument("--cases", type=int, default=1_000, help="test cases")
 arguments = parser.parse_args()
+check_file(arguments.out, "--out")
+style.check_format(arguments.out)
 
 settings = Settings(movements=arguments.movements, cases=arguments.cases, progress_bar=True)
 comparison = compare(arguments.agents, settings)
-style.save(learning_curves(comparison), arguments.out)
 for result in comparison.results:
-    first = result.trained[0].curve[0]
+    first, (test,) = result.trained[0].curve[0], result.tests
     print(
         f"{result.contender.title}, {result.contender.detail}: {first.success:.3f} after "
-        f"{first.control_steps:,} control steps, {result.rates['success']['rate']:.3f} on the tests"
+        f"{first.control_steps:,} control steps, {test.rate('success'):.3f} on the tests"
     )
+style.save(learning_curves(comparison), arguments.out)

@@ -200,8 +200,8 @@ def main() -> None:
     torch.set_num_threads(1)
     task = TASKS[arguments.task]
     pictures = arguments.pictures or arguments.out
-    for name, folder in (("--out", arguments.out), ("--pictures", pictures)):
-        check_folder(folder, name)
+    for name, folder, kind in (("--out", arguments.out, "json"), ("--pictures", pictures, "png")):
+        check_folder(folder, name, [f"ppo_{task.name}.{kind}"])
         folder.mkdir(exist_ok=True)
     plan = [
         (preset, arguments.steps or PRESETS[preset].steps, seed)

@@ -67,7 +67,6 @@ class BabbleVecEnv(VecEnv):
             num_envs, self.envs.single_observation_space, self.envs.single_action_space
         )
         self.metadata = self.envs.metadata
-        self._held: list[dict[str, Any]] = [{} for _ in range(num_envs)]
         self._actions: Any = None
         self._returns = np.zeros(num_envs)
         self._lengths = np.zeros(num_envs, np.int64)
@@ -83,14 +82,10 @@ class BabbleVecEnv(VecEnv):
         seeds, options = self._seeds, self._options
         self._reset_seeds()
         self._reset_options()
-        held = [
-            _as_scenario(new) if new else old for new, old in zip(options, self._held, strict=True)
-        ]
         observation, infos = self.envs.reset(
             seed=None if all(seed is None for seed in seeds) else seeds,
-            options={"scenario": held},
+            options={"scenario": [_as_scenario(new) if new else None for new in options]},
         )
-        self._held = held
         self._returns[:] = 0.0
         self._lengths[:] = 0
         self.reset_infos = _list_of_infos(infos, self.num_envs)

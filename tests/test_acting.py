@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from stable_baselines3 import PPO
 from stable_baselines3.common.env_util import make_vec_env
-from stable_baselines3.common.vec_env import VecFrameStack, VecNormalize
+from stable_baselines3.common.vec_env import SubprocVecEnv, VecFrameStack, VecNormalize
 
 from gym_babble import HebbBabbling, Oracle, Random, Scripted, evaluate, scenarios
 from gym_babble.agents.loading import named_agent
@@ -221,6 +221,11 @@ def test_a_zip_of_ours_that_has_learnt_on_is_as_any_other(zips):
     model.env = None  # As after saving and loading.
     with pytest.raises(ConfigError, match="does not say where it learnt"):
         evaluate(model)
+    for broken in (None, 3, {}, {**model.gym_babble_env, "config": "paper"}):
+        model.gym_babble_env = broken
+        model._n_updates = 5
+        with pytest.raises(ConfigError, match="does not say where it learnt"):
+            evaluate(model)
 
 
 def named_agent_of(model):
@@ -260,6 +265,20 @@ def test_a_live_model_acts_in_its_own_environment(env_id):
         evaluate(model, env_id, cases, control="delta_posture")
     singles = make_vec_env(env_id, 2, env_kwargs={"control": "posture"})
     assert len(evaluate(tiny_ppo(singles), cases=cases)) == 4
+
+
+def test_a_model_whose_environments_are_other_processes_acts_there_too():
+    # Asked for something that cannot be pickled, the processes ended.
+    workers = make_vec_env(
+        "gym_babble:BabbleReach-v0", 2, env_kwargs={"control": "posture"}, vec_env_cls=SubprocVecEnv
+    )
+    model = tiny_ppo(workers)
+    cases = scenarios("table1", 3)
+    assert evaluate(model, cases=cases) == evaluate(
+        model, "BabbleReach-v0", cases, control="posture"
+    )
+    workers.reset()
+    workers.close()
 
 
 def test_a_model_of_flat_observations_sees_them_again():
@@ -316,6 +335,8 @@ def test_a_zip_of_a_normalized_model_needs_their_file(normalized, tmp_path):
     np.testing.assert_array_equal(
         loaded.agent.predict(observation, deterministic=True)[0], expected
     )
+    with pytest.raises(FileNotFoundError, match="missing"):
+        named_agent(str(path), vec_normalize=tmp_path / "missing.pkl", **asked)
     other = tmp_path / "other.pkl"
     other.write_bytes(b"no statistics")
     with pytest.raises(AgentFileError, match=r"other\.pkl"):

@@ -180,7 +180,7 @@ def test_results_of_grasping_are_split_by_size(grasping):
             ]
             assert rates["by_size"][size]["cases"] == len(of_size)
             assert rates["by_size"][size]["success"]["count"] == of_size.count("success")
-        assert [row.title for row in result.rates] == ["", "2.4 cm", "6 cm"]
+        assert [row.title for row in result.rows] == ["", "2.4 cm", "6 cm"]
     assert "6 cm" in printed(grasping)
 
 
@@ -192,7 +192,7 @@ def test_the_stored_row_is_the_studys(grasping):
             "cases": rates["cases"]
         } == run.counts
     # Seeds are not pooled: their mean and range, then a row with each one's own interval.
-    first, *rest = [row for row in result.rates if "cm" not in row.title]
+    first, *rest = [row for row in result.rows if "cm" not in row.title]
     success = [run.counts["success"] / run.counts["cases"] for run in study.runs]
     assert first.rates["success"]["rate"] == pytest.approx(sum(success) / len(success))
     assert first.rates["success"]["low"] == min(success)
@@ -247,7 +247,7 @@ def test_seeds_are_not_pooled():
         assert (row["seed"], row["cases"]) == (seed, 50)
         assert (row["success"]["low"], row["success"]["high"]) == test.interval("success")
         assert test.cases == tuple(scenarios("table1", 50, seed))
-    assert [row.title for row in one.rates] == ["", "seed 5", "seed 6"]
+    assert [row.title for row in one.rows] == ["", "seed 5", "seed 6"]
 
 
 def test_without_stable_baselines3_the_others_run(monkeypatch):

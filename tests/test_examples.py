@@ -47,6 +47,10 @@ RUNS = {
         "--trials 2 --diameters 2.4",
         r"\| 2\.4 \| \d\.\d\d \| .+ \| \d+, \d+ \| \d+ of 441 \|",
     ),
+    "solvable.py": (
+        "--cases 3 --ids BabbleReachGoal-v0",
+        r"\| `BabbleReachGoal-v0` \| pattern \| \d\.\d{3} \| \d\.\d{3} \|",
+    ),
     "grasp_sides.py": ("--cases 12", r"\| all \| 12 \| \d\.\d\d \| \d\.\d\d \|"),
     "grasp_interference.py": (
         "--seeds 1 --babbles 12 --cases 8",

@@ -3,17 +3,28 @@
 from __future__ import annotations
 
 import json
+import pickle
 import subprocess
 import sys
+from copy import deepcopy
 from typing import Any
 
 import numpy as np
 import pytest
-from comparing import ALL_CHOICES, EACH_CONTROL, GRASP_IDS, TASKS, assert_same, rollout
+from comparing import (
+    ALL_CHOICES,
+    BATCHES,
+    EACH_CONTROL,
+    GRASP_IDS,
+    TASKS,
+    assert_same,
+    rollout,
+)
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gym_babble.errors import BabbleError, SnapshotError
+from gym_babble.sb3 import BabbleVecEnv
 
 each_task = pytest.mark.parametrize("task", TASKS)
 CONTACT = {"start": (0.2, 0.8), "object": (0.13, 0.2), "diameter": 0.05}
@@ -199,3 +210,59 @@ def test_a_state_says_what_it_is_not_of(task):
         with pytest.raises(SnapshotError, match=named):
             env.set_state(state)
     assert env.get_state() == good
+
+
+PENDING = {
+    "reach": [{"start": (0.1, 0.2)}, {"target": (0.05, 0.28), "obstacle": None}],
+    "grasp": [{"object": (0.0, 0.2), "diameter": 0.03}, {"start": (-0.8, 0.5)}],
+}
+
+
+def to_the_next_episodes(env: Any, first: Any) -> list[Any]:
+    """What follows over two automatic resets, after a first reset or step."""
+    still = np.zeros(env.action_space.shape, np.float32)
+    return [first(), *(env.step(still) for _ in range(7))]
+
+
+@each_task
+@pytest.mark.parametrize("mode", ["NextStep", "SameStep"])
+def test_what_was_asked_of_the_cases_to_come_survives(task, mode):
+    kind = BATCHES[task]
+    env, other = (kind(2, autoreset_mode=mode, max_episode_steps=3) for _ in range(2))
+    env.reset(seed=0, options={"scenario": PENDING[task]})
+    still = np.zeros(env.action_space.shape, np.float32)
+    for _ in range(3):
+        env.step(still)
+    other.set_state(env.get_state())
+    copies = [other, pickle.loads(pickle.dumps(env)), deepcopy(env)]  # noqa: S301
+    expected = to_the_next_episodes(env, lambda: env.step(still))
+    for scenario, asked in zip(env.call("scenario"), PENDING[task], strict=True):
+        assert all(scenario[name] == pytest.approx(value) for name, value in asked.items())
+    for copy in copies:
+        assert_same(to_the_next_episodes(copy, lambda copy=copy: copy.step(still)), expected)
+        assert copy.call("scenario") == env.call("scenario")
+
+
+@each_task
+def test_what_was_asked_of_a_vec_env_survives(task):
+    env, other = (BabbleVecEnv(f"Babble{task.title()}-v0", 2) for _ in range(2))
+    env.seed(0)
+    env.set_options(PENDING[task])
+    waiting = deepcopy(env)
+    assert_same(env.reset(), waiting.reset())
+    other.reset()
+    other.envs.set_state(env.envs.get_state())
+    # Without options a reset asks for what was asked before, which the states hold.
+    assert_same(env.reset(), other.reset())
+    assert env.get_attr("scenario") == other.get_attr("scenario")
+
+
+@each_task
+def test_options_of_one_environment_leave_those_of_the_others(task):
+    envs = BATCHES[task](2)
+    first, second = PENDING[task]
+    envs.reset(seed=0, options={"scenario": PENDING[task]})
+    envs.reset(options={"scenario": [None, {}]})
+    found = envs.call("scenario")
+    assert all(found[0][name] == pytest.approx(value) for name, value in first.items())
+    assert any(found[1][name] != second[name] for name in second)

@@ -110,11 +110,17 @@ def carried(agent: Any) -> EnvArguments | None:
             return None
         _check_wrappers(env, interface)
         return EnvArguments.of(interface)
-    mark = getattr(agent, MARK, None)
-    # A model that has learnt on since it was marked may have done so elsewhere.
-    if isinstance(mark, dict) and mark.get("updates") == getattr(agent, "_n_updates", None):
-        return EnvArguments(**{name: mark[name] for name in ("task", "config", "options")})
-    return None
+    return _read_mark(getattr(agent, MARK, None), getattr(agent, "_n_updates", None))
+
+
+def _read_mark(mark: Any, updates: Any) -> EnvArguments | None:
+    """What a mark says; None without one, or if the model has learnt on since, maybe elsewhere."""
+    if not isinstance(mark, dict) or mark.get("updates") != updates:
+        return None
+    kinds = {"task": str, "config": dict, "options": dict}
+    if not all(isinstance(mark.get(name), kind) for name, kind in kinds.items()):
+        return None
+    return EnvArguments(**{name: mark[name] for name in kinds})
 
 
 def marked(arguments: EnvArguments, updates: int) -> dict[str, Any]:

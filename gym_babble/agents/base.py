@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import json
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeVar, runtime_checkable
 
 import gymnasium
@@ -216,19 +215,10 @@ class Planner:
         return senses
 
     def __getstate__(self) -> dict[str, Any]:
-        interface = self._interface
-        defaults = interface.entry.defaults
-        options = {k: v for k, v in interface.options.items() if v != defaults.get(k)}
-        state = {k: v for k, v in self.__dict__.items() if k not in {"_interface", "_core"}}
-        where = (interface.entry.name, interface.task.config(), interface.render_mode, options)
-        return {**state, "_where": where}
+        return {k: v for k, v in self.__dict__.items() if k != "_core"}
 
     def __setstate__(self, state: Mapping[str, Any]) -> None:
-        task, config, render_mode, options = state["_where"]
-        self.__dict__.update({k: v for k, v in state.items() if k != "_where"})
-        self._interface = Interface(
-            task, config=json.loads(config), render_mode=render_mode, options=options
-        )
+        self.__dict__.update(state)
 
 
 def _array(observation: Any) -> NDArray[np.float32]:

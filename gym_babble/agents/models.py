@@ -158,6 +158,7 @@ def load_normalizer(path: Path, arguments: EnvArguments) -> Any:
     """The `VecNormalize` in a file that its `save` wrote. Loading it unpickles.
 
     Raises:
+        FileNotFoundError: There is no such file.
         AgentFileError: The file is not one.
     """
     from stable_baselines3.common.vec_env import DummyVecEnv, VecNormalize
@@ -165,6 +166,8 @@ def load_normalizer(path: Path, arguments: EnvArguments) -> Any:
     venv = DummyVecEnv([arguments.single])
     try:
         return VecNormalize.load(str(path), venv)
+    except FileNotFoundError:
+        raise
     except Exception as error:  # Unpickling can raise anything.
         raise AgentFileError(f"{path}: not the statistics of a VecNormalize: {error}") from error
 

@@ -24,7 +24,7 @@ from gym_babble.cli.output import (
     say,
 )
 from gym_babble.files import check_folder
-from gym_babble.report import write_report
+from gym_babble.report import REPORT_FILES, write_report
 from gym_babble.study.compare import compare as run_comparison
 from gym_babble.study.contenders import Settings
 from gym_babble.study.tasks import TASKS
@@ -53,7 +53,7 @@ def compare(
 ) -> None:
     """Compare Hebb babbling with PPO, and with agents that need no learning."""
     if report is not None:
-        check_folder(report, "--report")
+        check_folder(report, "--report", REPORT_FILES)
         check_format(report / "figure.svg")  # Fails now if the extra `figures` is missing.
     settings = Settings(
         task=task,

@@ -16,6 +16,7 @@ __all__ = [
     "print_json",
     "print_results",
     "say",
+    "table_files",
     "write_table",
 ]
 
@@ -54,7 +55,13 @@ def check_picture(path: Path) -> None:
     check_format(path)
 
 
+def table_files(name: str) -> tuple[str, str]:
+    """Names of a table's files."""
+    return f"{name}.json", f"{name}.csv"
+
+
 def write_table(folder: Path, name: str, document: dict[str, Any], csv: str) -> None:
     """Writes a table as JSON and CSV into a folder, which is created if missing."""
     text = json.dumps(document, indent=2) + "\n"
-    name_files(write_files(folder, {f"{name}.json": text, f"{name}.csv": csv}))
+    files = dict(zip(table_files(name), (text, csv), strict=True))
+    name_files(write_files(folder, files))

@@ -19,7 +19,7 @@ from gym_babble.cli.arguments import (
 from gym_babble.cli.output import name_files, say
 from gym_babble.envs.registry import TASKS
 from gym_babble.files import check_folder
-from gym_babble.viz.film import record, save_film
+from gym_babble.viz.film import film_files, record, save_film
 
 __all__ = ["render"]
 
@@ -46,7 +46,7 @@ def render(
     vec_normalize: VecNormalizeFile = None,
 ) -> None:
     """Film an episode of an agent: a contact sheet, and frames, GIF or MP4."""
-    check_folder(folder, "--out")
+    check_folder(folder, "--out", film_files(kind))
     loaded = named_agent(
         agent,
         env_id=env_id,

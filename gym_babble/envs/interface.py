@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import json
 from collections.abc import Mapping
+from copy import deepcopy
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -30,7 +31,11 @@ RENDER_MODES = ("human", "rgb_array", "rgb_array_list")
 
 
 class Interface:
-    """Gymnasium's view of a task: its options, spaces, observations and cases."""
+    """Gymnasium's view of a task: its options, spaces, observations and cases.
+
+    It keeps nothing that it was given: a copy or a pickle has the config that was read, and not the
+    path, dict or list that it came from, which may have changed since.
+    """
 
     def __init__(
         self, task: str, *, config: ConfigLike, render_mode: str | None, options: Mapping[str, Any]
@@ -43,7 +48,8 @@ class Interface:
             given["record"] = True
         self.task = _core.Task(task, config_json(config), json.dumps(given))
         self.render_mode = render_mode
-        self.options: dict[str, Any] = self.entry.defaults | given
+        self._given = deepcopy(given)
+        self.options: dict[str, Any] = deepcopy(self.entry.defaults | given)
         """All options by name."""
         self.quantities: dict[str, Any] = {
             name: value if isinstance(value, float) else np.array(value)
@@ -57,6 +63,9 @@ class Interface:
         self.action_space = self.spec.action.box
         self.outcomes = np.array(_core.outcomes(), dtype=object)
         """Names by the core's codes."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _interface, (self.entry.name, self.task.config(), self.render_mode, self._given)
 
     @cached_property
     def config_label(self) -> str:
@@ -148,6 +157,11 @@ class Interface:
             )
         rewards = self.task.goal_reward(achieved.reshape(-1, width), desired.reshape(-1, width))
         return float(rewards[0]) if achieved.ndim == 1 else rewards.reshape(achieved.shape[:-1])
+
+
+def _interface(task: str, config: str, render_mode: str | None, given: Any) -> Interface:
+    """The interface that was copied or pickled."""
+    return Interface(task, config=json.loads(config), render_mode=render_mode, options=given)
 
 
 def _value(part: CasePart, value: Any) -> float | list[float] | None:

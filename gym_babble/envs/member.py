@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections import deque
 from typing import TYPE_CHECKING, Any
 
 import gymnasium
 
+from gym_babble import _core
 from gym_babble.envs.spaces import need_reset
 from gym_babble.errors import SnapshotError
 
@@ -13,20 +15,24 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from gym_babble._core import Batch
     from gym_babble.envs.interface import Interface
 
 __all__ = ["BatchMember"]
+
+MOST_KEPT = 1_000
+"""Ended episodes whose frames wait to be fetched; of earlier ones they are dropped."""
 
 
 class BatchMember:
     """What belongs to environment `i` of a batch, and not to the batch as a whole."""
 
-    def __init__(self, interface: Interface, batch: Batch, i: int) -> None:
+    def __init__(self, interface: Interface, batch: _core.Batch, i: int) -> None:
         self._interface = interface
         self._batch = batch
         self._i = i
         self._shown = 0
+        self._ended: deque[tuple[bytes, int]] = deque(maxlen=MOST_KEPT)
+        """Ended episodes with frames to show: state, and how many frames were shown."""
         self.ready = False
 
     def get_state(self) -> bytes:
@@ -42,18 +48,19 @@ class BatchMember:
         if not isinstance(state, bytes):
             raise SnapshotError(f"state is a {type(state).__name__}, expected bytes")
         self._batch.load(self._i, state)
+        self._ended.clear()
         self._shown = self._batch.moments(self._i)
         self.ready = True
 
-    def freeze(self) -> tuple[bytes, bool, int]:
+    def freeze(self) -> tuple[Any, ...]:
         """All that a copy needs, before the first reset too."""
-        return self.get_state(), self.ready, self._shown
+        return self.get_state(), self.ready, self._shown, self._ended.copy()
 
-    def thaw(self, frozen: tuple[bytes, bool, int]) -> None:
+    def thaw(self, frozen: tuple[Any, ...]) -> None:
         """Continues from what `freeze` gave."""
-        state, ready, shown = frozen
+        state, *others = frozen
         self.set_state(state)
-        self.ready, self._shown = ready, shown
+        self.ready, self._shown, self._ended = others
 
     def state_hash(self) -> int:
         """A number that two states share only if they are the same to the bit."""
@@ -88,22 +95,36 @@ class BatchMember:
         return self.new_frames()
 
     def begin(self) -> None:
-        """A new episode has begun, to be shown from its first frame on."""
+        """The user began a new episode, which is shown from its first frame on."""
         self.ready = True
         self._shown = 0
+        self._ended.clear()
+
+    def follow(self) -> None:
+        """Keeps the frames of the ended episode, if a new one began by itself within the step."""
+        state = self._batch.save_ended(self._i)
+        if state is not None:
+            self._ended.append((state, self._shown))
+            self._shown = 0
 
     def new_frames(self) -> list[NDArray[np.uint8]]:
         """The frames since the last call, one a control step."""
-        end = self._batch.moments(self._i)
-        # A trail shorter than what was shown belongs to an episode begun since.
-        first = self._shown if self._shown <= end else 0
-        self._shown = end
-        return [self.frame(k) for k in range(first, end)]
+        frames = []
+        for state, shown in self._ended:
+            ended = _core.Batch(self._interface.task)
+            ended.load(0, state)
+            frames += [self._picture(ended, 0, k) for k in range(shown, ended.moments(0))]
+        self._ended.clear()
+        first, self._shown = self._shown, self._batch.moments(self._i)
+        return frames + [self.frame(k) for k in range(first, self._shown)]
 
     def frame(self, moment: int | None) -> NDArray[np.uint8]:
         """The picture (height, width, 3) now, or at a recorded moment."""
+        return self._picture(self._batch, self._i, moment)
+
+    def _picture(self, batch: _core.Batch, i: int, moment: int | None) -> NDArray[np.uint8]:
         width, height = self._interface.size
-        return self._batch.render(self._i, self._interface.camera, width, height, moment)
+        return batch.render(i, self._interface.camera, width, height, moment)
 
     def retina(self) -> NDArray[np.uint8]:
         """The eye's image in obs="retina"."""

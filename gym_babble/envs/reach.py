@@ -62,7 +62,9 @@ class BabbleReachEnv(BabbleEnv):
 
     The arm rests at the start of a babbled movement that was legal: target uniform in joint space,
     start 8–25 cm from it in a uniform direction, b1 uniform in (.01, .99), drawn until the movement
-    (quasi-static) neither touches the obstacle nor leaves the joint ranges. Body `icub`: 10–20 cm.
+    neither touches the obstacle nor leaves the joint ranges. Body `icub`: 10–20 cm. In `pattern`
+    control the movement is simulated with the muscles' lag, as for Table I's cases, so that some
+    action solves the case; in the other controls without it.
 
     ## Episode end
 

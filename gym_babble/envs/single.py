@@ -58,12 +58,9 @@ class BabbleEnv(gymnasium.Env[Any, Any]):
         Raises:
             ConfigError: An option or a config field is unknown, of a wrong kind or out of bounds.
         """
-        self._arguments: dict[str, Any] = {
-            "task": task or self.task_name,
-            "config": config,
-            "render_mode": render_mode,
-            "options": options,
-        }
+        self._interface = Interface(
+            task or self.task_name, config=config, render_mode=render_mode, options=options
+        )
         self.render_mode = render_mode
         self._make_core()
         self.observation_space = self._interface.observation_space
@@ -74,7 +71,6 @@ class BabbleEnv(gymnasium.Env[Any, Any]):
         self._window: Window | None = None
 
     def _make_core(self) -> None:
-        self._interface = Interface(**self._arguments)
         self._batch = _core.Batch(self._interface.task, 1)
         self._member = BatchMember(self._interface, self._batch, 0)
 
@@ -151,7 +147,8 @@ class BabbleEnv(gymnasium.Env[Any, Any]):
     def render(self) -> Any:
         """A frame (height, width, 3), or the frames since the last call, one a control step.
 
-        In "human" mode the window shows each step by itself and nothing is returned.
+        A reset drops the frames of the episode before. In "human" mode the window shows each step
+        by itself and nothing is returned; once its user closes it, episodes go on without it.
 
         Raises:
             gymnasium.error.ResetNeeded: There was no reset yet.
@@ -164,8 +161,9 @@ class BabbleEnv(gymnasium.Env[Any, Any]):
     def _show(self) -> None:
         if self._window is None:
             self._window = Window(self._interface.size, self._interface.render_fps)
-        for frame in self._member.new_frames():
-            self._window.show(frame)
+        if not self._window.is_closed:
+            for frame in self._member.new_frames():
+                self._window.show(frame)
 
     def close(self) -> None:
         """Closes the window, if there is one."""
@@ -202,7 +200,7 @@ class BabbleEnv(gymnasium.Env[Any, Any]):
         return self._member.trajectory
 
     def __getstate__(self) -> dict[str, Any]:
-        hidden = ("_batch", "_interface", "_member", "_window")
+        hidden = ("_batch", "_member", "_window")
         state = {k: v for k, v in self.__dict__.items() if k not in hidden}
         return {"attributes": state, "core": self._member.freeze()}
 

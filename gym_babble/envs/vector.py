@@ -41,8 +41,8 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
     `SAME_STEP` puts the ended episode's last observation and info in `infos["final_obs"]` and
     `infos["final_info"]`; with `DISABLED` ended environments are reset by
     `reset(options={"reset_mask": mask})`. `reset(options={"scenario": [...]})` takes one case for
-    all environments or a list with one for each; options hold for autoresets, and a `reset_mask`
-    alone leaves them as they are.
+    all environments or a list with one for each; options hold for autoresets. A `reset_mask` alone
+    leaves them as they are, and so does None in the list for one environment.
     """
 
     metadata: dict[str, Any] = {  # noqa: RUF012 - declared by VectorEnv
@@ -86,17 +86,14 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
         """
         if render_mode == "human":
             raise ConfigError("render_mode = 'human' shows one environment; use gymnasium.make")
-        self._arguments: dict[str, Any] = {
-            "task": task or self.task_name,
-            "config": config,
-            "render_mode": render_mode,
-            "options": options,
-        }
+        self._interface = Interface(
+            task or self.task_name, config=config, render_mode=render_mode, options=options
+        )
         self.render_mode = render_mode
         self.num_envs = num_envs = check_whole("num_envs", num_envs, 1, MOST_ENVS, "environments")
         self._autoreset = _autoreset_mode(autoreset_mode)
         if threads is None:
-            threads = default_threads(num_envs, task_entry(self._arguments["task"]).envs_per_thread)
+            threads = default_threads(num_envs, self._interface.entry.envs_per_thread)
         self._threads = check_threads(threads)
         self._make_core()
         interface = self._interface
@@ -113,7 +110,6 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
         self._seeded = False
 
     def _make_core(self) -> None:
-        self._interface = Interface(**self._arguments)
         if self._interface.obs == "retina":
             check_images(self.num_envs, self._interface.retina_size)
         self._batch = _core.Batch(
@@ -158,7 +154,8 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
             self._seed(seed, mask)
             if requests is not None:
                 for i in chosen:
-                    self._batch.request(i, requests[i])
+                    if (request := requests[i]) is not None:
+                        self._batch.request(i, request)
             self._batch.reset(mask.tolist())
             for i in chosen:
                 self._members[i].begin()
@@ -179,6 +176,9 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
         """
         with self._batch:
             self._batch.step(as_actions(actions, self._shape))
+            if self.render_mode == "rgb_array_list":
+                for member in self._members:
+                    member.follow()
             shown = self._batch.all()
             infos = self._infos(shown, np.ones(self.num_envs, np.bool_))
             if self._autoreset is AutoresetMode.SAME_STEP:
@@ -186,7 +186,9 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
             observation = self._observation(shown)
         return observation, shown["reward"], shown["terminated"], shown["truncated"], infos
 
-    def _read_options(self, options: Any) -> tuple[NDArray[np.bool_], list[dict[str, Any]] | None]:
+    def _read_options(
+        self, options: Any
+    ) -> tuple[NDArray[np.bool_], list[dict[str, Any] | None] | None]:
         """Which environments to reset, and what to ask of the cases of each."""
         everywhere = np.ones(self.num_envs, np.bool_)
         if options is None:
@@ -234,7 +236,7 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
             self._batch.seed(i, stream)
         self._seeded = True
 
-    def _requests(self, options: Any) -> list[dict[str, Any]]:
+    def _requests(self, options: Any) -> list[dict[str, Any] | None]:
         cases = options.get("scenario") if isinstance(options, Mapping) else None
         if not isinstance(cases, Sequence) or isinstance(cases, str):
             return [self._interface.request(options)] * self.num_envs
@@ -242,7 +244,12 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
             raise ConfigError(
                 f"options['scenario'] has {len(cases)} cases, expected one or {self.num_envs}"
             )
-        return [self._interface.request({**options, "scenario": case}) for case in cases]
+        return [
+            None
+            if case is None and len(options) == 1
+            else self._interface.request({**options, "scenario": case})
+            for case in cases
+        ]
 
     def _observation(self, shown: Mapping[str, Any]) -> Any:
         goals = self._goals(shown)
@@ -303,7 +310,10 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
             self._add_info(infos, final, i)
 
     def render(self) -> tuple[Any, ...]:
-        """A frame, or a list of the new ones, of each environment.
+        """A frame of each environment, or a list of those since the last call.
+
+        A list spans autoresets: it has the frames of ended episodes too, of the last 1,000.
+        `reset` drops them.
 
         Raises:
             gymnasium.error.ResetNeeded: There was no reset yet.
@@ -395,7 +405,7 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
             self._seeded = True
 
     def __getstate__(self) -> dict[str, Any]:
-        hidden = ("_batch", "_interface", "_members")
+        hidden = ("_batch", "_members")
         state = {k: v for k, v in self.__dict__.items() if k not in hidden}
         with self._batch:
             return {"attributes": state, "core": [member.freeze() for member in self._members]}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import os
 import secrets
 import stat
@@ -32,8 +31,8 @@ def write_file(path: str | os.PathLike[str], content: Content) -> None:
     """
     target = Path(os.path.realpath(path))
     with _naming(path):
-        _check_replaceable(target)
-        if target.exists() and not target.is_file():
+        check_replaceable(target)
+        if is_special(target):
             target.write_bytes(_bytes(content))
             return
         part = _write_part(target, content)
@@ -66,7 +65,7 @@ def write_files(
         place.mkdir(parents=True, exist_ok=True)
         targets = [Path(os.path.realpath(place / name)) for name in contents]
         for target in targets:
-            _check_replaceable(target)
+            check_replaceable(target)
         parts: list[Path] = []
         try:
             for target, content in zip(targets, contents.values(), strict=True):
@@ -89,16 +88,27 @@ def part_of(target: Path) -> Path:
     return target.with_name(f".{secrets.token_hex(8)}.part")
 
 
+def is_special(target: Path) -> bool:
+    """Whether it is a pipe or a device."""
+    try:
+        mode = target.stat().st_mode
+    except FileNotFoundError:
+        return False
+    return not stat.S_ISREG(mode) and not stat.S_ISDIR(mode)
+
+
+def check_replaceable(target: Path) -> None:
+    """Raises `OSError` for a folder, and for a file that is read-only.
+
+    Renaming asks only what the folder permits.
+    """
+    if not is_special(target):  # Opening a pipe would wait for a reader.
+        with suppress(FileNotFoundError):
+            os.close(os.open(target, os.O_WRONLY))
+
+
 def _bytes(content: Content) -> bytes:
     return content.encode("utf-8") if isinstance(content, str) else content
-
-
-def _check_replaceable(target: Path) -> None:
-    """Renaming asks only what the folder permits; a file that is read-only stays as it is."""
-    if target.is_dir():
-        raise OSError(errno.EISDIR, os.strerror(errno.EISDIR))
-    if target.exists() and not os.access(target, os.W_OK):
-        raise OSError(errno.EACCES, os.strerror(errno.EACCES))
 
 
 def _write_part(target: Path, content: Content) -> Path:
@@ -109,7 +119,7 @@ def _write_part(target: Path, content: Content) -> Path:
             file.write(_bytes(content))
             file.flush()
             os.fsync(file.fileno())
-        with suppress(FileNotFoundError):
+        with suppress(OSError):  # A new file, or a file system without permissions.
             part.chmod(stat.S_IMODE(target.stat().st_mode))
     except BaseException:  # Ctrl-C too.
         part.unlink(missing_ok=True)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import gymnasium
 import numpy as np
 
 from gym_babble.agents import Random, Scripted
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from gym_babble.agents.base import Agent
+    from gym_babble.agents.base import Agent, EnvLike
     from gym_babble.config import ConfigLike
     from gym_babble.study.scenarios import Scenario
 
@@ -69,6 +70,9 @@ def switched(case: Scenario) -> Scenario:
 class Straight:
     """Moves straight to the target, b1 = b2 = ½."""
 
+    def __init__(self, env: EnvLike) -> None:
+        self.env = env
+
     def predict(self, observation: Any) -> NDArray[np.float32]:  # noqa: ARG002
         """The same action for every observation."""
         return np.zeros(2, np.float32)
@@ -82,11 +86,12 @@ def reached(agent: Agent, seed: int = 0, config: ConfigLike = "paper") -> dict[s
     """
     halfway = scenarios("fig4", config=config)
     panels = {"halfway": halfway, "switched": [switched(case) for case in halfway]}
+    env = gymnasium.make("BabbleReachPattern-v0", config=config)
     agents: dict[str, Any] = {
         "agent": agent,
-        "straight": Straight(),
-        "random": Random("BabbleReachPattern-v0", seed=seed),
-        "scripted": Scripted("BabbleReachPattern-v0"),
+        "straight": Straight(env),
+        "random": Random(env, seed=seed),
+        "scripted": Scripted(env),
     }
     counts = {
         name: {

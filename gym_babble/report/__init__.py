@@ -13,7 +13,10 @@ if TYPE_CHECKING:
 
     from gym_babble.study.comparison import Comparison
 
-__all__ = ["write_report"]
+__all__ = ["REPORT_FILES", "write_report"]
+
+REPORT_FILES = ("index.html", "results.json")
+"""Names of the files of a report."""
 
 
 def write_report(
@@ -36,4 +39,4 @@ def write_report(
     """
     results = json.dumps(comparison.to_json(), indent=2) + "\n"
     page = page_of(comparison, command, other)
-    return write_files(folder, {"index.html": page, "results.json": results})
+    return write_files(folder, dict(zip(REPORT_FILES, (page, results), strict=True)))

@@ -69,7 +69,7 @@ def _lead(comparison: Comparison) -> str:
     task = comparison.task
     best = [
         f"{escape(result.contender.title)} ({escape(result.contender.detail)}) "
-        f"{share(result.rates[0].rates['success']['rate'])}"
+        f"{share(result.rows[0].rates['success']['rate'])}"
         for result in comparison.results
         if result.mean("trials")
     ]

@@ -65,7 +65,7 @@ def _result_rows(result: Result) -> str:
             trials = f"{accepted:,.0f}<small>{task.accepted} {share(result.accepted_rate)}</small>"
         steps = f"{result.mean('control_steps') / 1e6:.1f} M"
         cells = [trials, steps, f"{result.mean('seconds'):.0f} s"]
-    first, *rest = result.rates
+    first, *rest = result.rows
     name = named(result.contender.title, result.contender.detail)
     rows = [rates_row(name, first.rates, task, cells)]
     for row in rest:

@@ -47,7 +47,7 @@ class Result:
     """The `tally` of each seed's tests."""
 
     @property
-    def rates(self) -> list[RateRow]:
+    def rows(self) -> list[RateRow]:
         """The rows of rates: all cases, each size of the objects, each of several seeds."""
         return rate_rows(self.rates_by_seed, self.seeds, self.task)
 
@@ -208,7 +208,7 @@ class Comparison:
 
 def _rows(result: Result) -> list[list[str | Text]]:
     """The rows of a contender; only the first tells what it has learnt from."""
-    first, *rest = result.rates
+    first, *rest = result.rows
     name = stacked(result.contender.title, result.contender.detail, "bold")
     rows: list[list[str | Text]] = [[name, *rate_cells(first.rates, result.task)]]
     if result.mean("trials"):

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from gym_babble.agents.loading import LoadedAgent
 
-__all__ = ["Film", "contact_sheet", "png", "record", "save_film"]
+__all__ = ["Film", "contact_sheet", "film_files", "png", "record", "save_film"]
 
 GAP = 6
 """Width of the white gaps in a contact sheet [pixel]."""
@@ -79,6 +79,11 @@ def contact_sheet(
         top, left = k // columns * down, k % columns * right
         sheet[top : top + height, left : left + width] = frames[i]
     return sheet
+
+
+def film_files(kind: str) -> tuple[str, str]:
+    """Names of the contact sheet and the film, or its first frame."""
+    return "sheet.png", "frame0000.png" if kind == "png" else f"episode.{kind}"
 
 
 def save_film(film: Film, folder: Path, kind: str) -> list[Path]:

@@ -12,6 +12,7 @@ from gym_babble.cli.output import (
     name_files,
     print_json,
     print_results,
+    table_files,
     write_table,
 )
 from gym_babble.files import check_folder
@@ -44,7 +45,7 @@ def table2(
     as_json: AsJson = False,
 ) -> None:
     """Table II: learned hands, and outcomes of reaching and grasping, beside the paper's."""
-    check_folder(folder, "--out")
+    check_folder(folder, "--out", table_files("table2"))
     table = rates.table2(
         seed=seed,
         seeds=seeds,

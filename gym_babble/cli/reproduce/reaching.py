@@ -23,6 +23,7 @@ from gym_babble.cli.output import (
     name_files,
     print_json,
     print_results,
+    table_files,
     write_table,
 )
 from gym_babble.files import check_folder
@@ -56,7 +57,7 @@ def table1(
     as_json: AsJson = False,
 ) -> None:
     """Table I: outcomes of reaching, beside the paper's rates."""
-    check_folder(folder, "--out")
+    check_folder(folder, "--out", table_files("table1"))
     table = rates.table1(
         seed=seed,
         seeds=seeds,
@@ -100,7 +101,6 @@ def fig4(
     halfway = movements_to_targets.trajectories(agent, cases, config)
     exchanged = [movements_to_targets.switched(case) for case in cases]
     switched = movements_to_targets.trajectories(agent, exchanged, config)
-    save(movements_to_targets.draw(halfway, switched), file)
     counts = movements_to_targets.reached(agent, seed, config)
     if as_json:
         print_json({"config": config, "variant": variant, "movements": movements, **counts})
@@ -108,6 +108,7 @@ def fig4(
         for name, found in counts["reached"].items():
             both = f"{found['halfway']} halfway, {found['switched']} switched"
             print_results(f"{name}: {both}, of {counts['cases']}")
+    save(movements_to_targets.draw(halfway, switched), file)
     name_files([file])
 
 

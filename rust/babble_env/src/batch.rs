@@ -66,7 +66,7 @@ impl Record {
 struct BatchMember<T: Task> {
     env: Episode<T>,
     record: Record,
-    /// The episode that a same-step reset replaced.
+    /// The episode that an automatic reset replaced within the last step.
     final_episode: Option<FinalEpisode<T::State>>,
 }
 
@@ -175,8 +175,7 @@ impl<T: Task> Batch<T> {
         self.members.iter().map(|member| &member.record)
     }
 
-    /// The episode that ended within the last step, of each environment that a same-step reset began
-    /// anew.
+    /// The ended episode of each environment that began anew by itself within the last step.
     #[must_use]
     pub fn final_episodes(&self) -> impl ExactSizeIterator<Item = Option<&FinalEpisode<T::State>>> {
         self.members
@@ -312,6 +311,16 @@ impl<T: Task> Batch<T> {
         snapshot::save(&*self.task, self.state(i)?)
     }
 
+    /// The ended episode of environment `i` as bytes, if it began anew by itself within the last step.
+    ///
+    /// # Errors
+    /// As [`Self::save`].
+    pub fn save_final(&self, i: usize) -> Result<Option<Vec<u8>>, EnvError> {
+        let ended = self.final_episodes().nth(i).flatten();
+        let save = |ended: &FinalEpisode<T::State>| snapshot::save(&*self.task, &ended.state);
+        ended.map(save).transpose()
+    }
+
     /// Continues environment `i` from bytes.
     ///
     /// # Errors
@@ -360,19 +369,24 @@ impl<T: Task> BatchMember<T> {
     ) -> Result<(), EnvError> {
         self.final_episode = None;
         if self.env.phase() == Phase::Ended {
+            self.keep_final();
             return self.reset(task, stop);
         }
         let step = self.env.step(task, action)?;
         self.record.update(task, &self.env, step);
         if autoreset == Autoreset::SameStep && (step.terminated || step.truncated) {
-            self.final_episode = Some(FinalEpisode {
-                record: self.record.clone(),
-                state: self.env.state().clone(),
-            });
+            self.keep_final();
             self.reset(task, stop)?;
             self.record.step = step;
         }
         Ok(())
+    }
+
+    fn keep_final(&mut self) {
+        self.final_episode = Some(FinalEpisode {
+            record: self.record.clone(),
+            state: self.env.state().clone(),
+        });
     }
 }
 

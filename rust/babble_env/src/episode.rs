@@ -13,8 +13,6 @@ use crate::task::{MAX_FACTS, MAX_TERMS, Task};
 pub struct Episode<T: Task> {
     state: T::State,
     derived: T::Derived,
-    /// What the user asks of the cases from the next reset on, if it can be played.
-    asked: Option<T::Request>,
 }
 
 /// A new episode that was drawn and not begun yet.
@@ -54,6 +52,7 @@ impl<T: Task> Episode<T> {
         let lifecycle = Lifecycle {
             phase: Phase::Fresh,
             request: T::Request::default(),
+            pending: None,
             stream,
         };
         Self::from_state(task, task.fresh(lifecycle))
@@ -65,7 +64,6 @@ impl<T: Task> Episode<T> {
         Self {
             derived: task.derive(&state),
             state,
-            asked: None,
         }
     }
 
@@ -88,7 +86,7 @@ impl<T: Task> Episode<T> {
 
     /// Sets what the following resets ask of their cases; forgotten if the next one cannot play it.
     pub fn request(&mut self, request: T::Request) {
-        self.asked = Some(request);
+        T::shared_mut(&mut self.state).1.pending = Some(request);
     }
 
     /// Draws the case of a new episode.
@@ -97,9 +95,9 @@ impl<T: Task> Episode<T> {
     /// [`EnvError`] when the case asked for cannot be played, and [`EnvError::Interrupted`] when `stop`
     /// says so; the episode stays as it was.
     pub fn draw(&mut self, task: &T, stop: &Stop<'_>) -> Result<NextEpisode<T>, EnvError> {
-        let (_, lifecycle) = T::shared(&self.state);
+        let (_, lifecycle) = T::shared_mut(&mut self.state);
         let kept = || lifecycle.request.clone();
-        let request = self.asked.take().unwrap_or_else(kept);
+        let request = lifecycle.pending.take().unwrap_or_else(kept);
         let mut stream = lifecycle.stream.clone();
         Ok(NextEpisode {
             drawn: task.draw(&request, &mut stream, stop)?,
@@ -115,6 +113,7 @@ impl<T: Task> Episode<T> {
         *lifecycle = Lifecycle {
             phase: Phase::Running,
             request: next.request,
+            pending: None,
             stream: next.stream,
         };
         task.begin(&mut self.state, next.drawn);

@@ -37,6 +37,9 @@ pub trait AnyTask: Any + fmt::Debug + Send + Sync {
     /// As [`Task::robot`].
     fn robot(&self) -> Vec<LinkDescription>;
 
+    /// As [`Task::unconverged_steps`].
+    fn unconverged_steps(&self) -> Option<u64>;
+
     /// Whether one step takes longer than handing it to a thread.
     fn has_long_steps(&self) -> bool;
 
@@ -96,6 +99,10 @@ impl<T: Task> AnyTask for T {
         Task::robot(self)
     }
 
+    fn unconverged_steps(&self) -> Option<u64> {
+        Task::unconverged_steps(self)
+    }
+
     fn has_long_steps(&self) -> bool {
         self.min_per_thread() == 1
     }
@@ -139,8 +146,8 @@ pub trait AnyBatch: Any + fmt::Debug + Send + Sync {
     /// What environment `i` showed last.
     fn record(&self, i: usize) -> Option<&Record>;
 
-    /// What the episode showed last that environment `i` ended within the last step, if a same-step
-    /// reset began it anew.
+    /// What the ended episode of environment `i` showed last, if it began anew by itself within the
+    /// last step.
     fn final_record(&self, i: usize) -> Option<&Record>;
 
     /// Starts the stream of environment `i` anew from `seed`.
@@ -157,6 +164,9 @@ pub trait AnyBatch: Any + fmt::Debug + Send + Sync {
 
     /// Environment `i` as bytes.
     fn save(&self, i: usize) -> Result<Vec<u8>, EnvError>;
+
+    /// The episode of [`Self::final_record`] as bytes.
+    fn save_final(&self, i: usize) -> Result<Option<Vec<u8>>, EnvError>;
 
     /// Continues environment `i` from bytes.
     fn load(&mut self, i: usize, bytes: &[u8]) -> Result<(), EnvError>;
@@ -227,6 +237,10 @@ impl<T: Task> AnyBatch for Batch<T> {
 
     fn save(&self, i: usize) -> Result<Vec<u8>, EnvError> {
         self.save(i)
+    }
+
+    fn save_final(&self, i: usize) -> Result<Option<Vec<u8>>, EnvError> {
+        self.save_final(i)
     }
 
     fn load(&mut self, i: usize, bytes: &[u8]) -> Result<(), EnvError> {

@@ -53,6 +53,8 @@ pub struct Lifecycle<R> {
     pub phase: Phase,
     /// What the user asked of the cases, kept for autoresets.
     pub request: R,
+    /// What the user asks from the next reset on, if that can play it; not checked before.
+    pub pending: Option<R>,
     /// Random numbers for the cases to come.
     pub stream: Stream,
 }

@@ -7,7 +7,7 @@ use crate::episode;
 use crate::error::EnvError;
 use crate::task::Task;
 
-const VERSION: u16 = 2;
+const VERSION: u16 = 3;
 
 #[derive(Serialize, Deserialize)]
 struct Header {

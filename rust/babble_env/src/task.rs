@@ -70,6 +70,12 @@ pub trait Task: fmt::Debug + Send + Sync + Sized + 'static {
         Vec::new()
     }
 
+    /// Physics steps in which the solver of contacts did not converge, in all episodes of this task
+    /// together; none where no solver tells.
+    fn unconverged_steps(&self) -> Option<u64> {
+        None
+    }
+
     /// Observations, actions, and the names of all that an episode shows.
     fn spec(&self) -> Spec;
 

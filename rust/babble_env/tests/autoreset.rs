@@ -40,7 +40,7 @@ fn by_hand(of: Control, episodes: usize) -> Vec<Vec<Record>> {
 
 /// At the next step: the ending step shows the end, the one after it the first observation of the
 /// same new episode that a reset by hand gives, without reward, its action ignored. Catches a
-/// reset within the ending step, and one that plays the action.
+/// reset within the ending step, one that plays the action, and an ended episode that is lost.
 #[test]
 fn next_step_resets_one_step_later() {
     for &of in Control::ALL {
@@ -54,6 +54,9 @@ fn next_step_resets_one_step_later() {
                 assert!(env.final_episodes().next().unwrap().is_none());
             }
             env.step(&[1.0, -1.0]).unwrap();
+            let last = env.final_episodes().next().unwrap();
+            let last = last.expect("the episode that the reset replaced");
+            assert_eq!(last.record, episode[episode.len() - 1]);
         }
     }
 }

@@ -110,6 +110,40 @@ fn table1_depends_on_purpose_seed_and_index_alone() {
     }
 }
 
+/// In `pattern` control a sampled case can be solved with the muscles' lag, also around a given end;
+/// with nothing given it is the case of a legal movement, as Table I's are. The other controls sample
+/// without the lag. Catches a draw that leaves some cases to nobody.
+#[test]
+fn sampled_cases_can_be_solved_in_their_control() {
+    for &of in Control::ALL {
+        let fidelity = match of {
+            Control::Pattern => Fidelity::Full,
+            _ => Fidelity::QuasiStatic,
+        };
+        let task = task(control(of));
+        for i in 0..25 {
+            let stream = || Stream::new(Purpose::Test, 5, i);
+            let case = CaseRequest::default().draw(&task, &mut stream()).unwrap();
+            let legal = ReachCase::draw_legal(&task, &mut stream(), fidelity).unwrap();
+            assert_eq!(case, legal);
+            assert!(is_solvable(&task, &case, fidelity), "{of}");
+            let [start, target] = [case.hand, case.target];
+            let from = CaseRequest {
+                start: Some(start),
+                ..CaseRequest::default()
+            };
+            let to = CaseRequest {
+                target: Some(target),
+                ..CaseRequest::default()
+            };
+            for request in [from, to] {
+                let case = request.draw(&task, &mut stream()).unwrap();
+                assert!(is_solvable(&task, &case, fidelity), "{of} {request:?}");
+            }
+        }
+    }
+}
+
 /// Streams differ in purpose, seed and index, and repeat themselves. Catches a seed that is added
 /// to the index, so that environment 1 of seed 0 is environment 0 of seed 1.
 #[test]

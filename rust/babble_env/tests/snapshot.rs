@@ -4,6 +4,7 @@ mod playing;
 
 use std::sync::Arc;
 
+use babble_env::tasks::reach::CaseRequest;
 use babble_env::{Autoreset, Batch, Config, Control, EnvError, ReachOptions, ReachTask, Reward};
 use playing::{Actions, bits, control, goal, seeded, task};
 use proptest::prelude::*;
@@ -132,6 +133,45 @@ fn foreign_snapshots_are_refused() {
     };
     env.load(0, &played(recording, 3).0.save(0).unwrap())
         .unwrap();
+}
+
+/// What was asked of the next episode, and not played yet, is asked of it after the snapshot too:
+/// before the first reset, in mid-episode, and where an automatic reset will play it. One that cannot
+/// be played is refused by the reset, as it would be without the snapshot. Catches a request that
+/// is kept beside the state.
+#[test]
+fn a_pending_request_survives() {
+    let asked = |target| CaseRequest {
+        target: Some(target),
+        ..CaseRequest::default()
+    };
+    for steps in [None, Some(0), Some(12), Some(30)] {
+        let fresh = || Batch::new(task(options(Control::Posture)), 1, Autoreset::NextStep, 1);
+        let mut env = match steps {
+            None => fresh().unwrap(),
+            Some(steps) => played(options(Control::Posture), steps).0,
+        };
+        for (target, playable) in [
+            ([0.1, 0.25], true),
+            ([9.0, 9.0], false),
+            ([f64::NAN; 2], false),
+        ] {
+            env.request(0, asked(target)).unwrap();
+            let mut other = fresh().unwrap();
+            other.load(0, &env.save(0).unwrap()).unwrap();
+            assert_eq!(other.reset(&[true]).is_ok(), playable);
+            assert_eq!(env.reset(&[true]).is_ok(), playable);
+            assert_eq!(bits(&env), bits(&other));
+            if playable {
+                assert_eq!(other.state(0).unwrap().case.target, target);
+            }
+        }
+    }
+    let (mut env, _) = played(options(Control::Posture), 30);
+    env.request(0, asked([0.1, 0.25])).unwrap();
+    env.load(0, &env.save(0).unwrap()).unwrap();
+    env.step(&[0.0; 2]).unwrap();
+    assert_eq!(env.state(0).unwrap().case.target, [0.1, 0.25]);
 }
 
 /// An environment that was never reset has a snapshot too, and still needs a reset after it.

@@ -166,8 +166,8 @@ impl Batch {
         self.arrays(py, &records)
     }
 
-    /// The same for the episodes that ended within the last step and were begun anew, and their
-    /// indices; None if there are none.
+    /// The same for the ended episodes of environments that began anew by themselves within the last
+    /// step, and the indices of these; None if there are none.
     fn ended<'py>(&self, py: Python<'py>) -> PyResult<Option<Ended<'py>>> {
         let envs = &*self.envs.read()?;
         let ended: Vec<(usize, &Record)> = (0..envs.envs())
@@ -187,6 +187,13 @@ impl Batch {
     fn save<'py>(&self, py: Python<'py>, i: usize) -> PyResult<Bound<'py, PyBytes>> {
         let bytes = self.envs.read()?.save(i).map_err(errors::env)?;
         Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// The ended episode of environment `i` as such bytes; None if it did not begin anew by itself
+    /// within the last step.
+    fn save_ended<'py>(&self, py: Python<'py>, i: usize) -> PyResult<Option<Bound<'py, PyBytes>>> {
+        let bytes = self.envs.read()?.save_final(i).map_err(errors::env)?;
+        Ok(bytes.map(|bytes| PyBytes::new(py, &bytes)))
     }
 
     /// Continues environment `i` from bytes.
@@ -233,8 +240,8 @@ impl Batch {
         PyArray1::from_vec(py, image.into_raw()).reshape([height as usize, width as usize, 3])
     }
 
-    /// The eye's last image (size, size, 3) of the episode that environment `i` ended within the last
-    /// step, if it was begun anew.
+    /// The eye's last image (size, size, 3) of the ended episode of environment `i`; None if it did not
+    /// begin anew by itself within the last step.
     fn retina_ended<'py>(
         &self,
         py: Python<'py>,

@@ -63,6 +63,12 @@ impl Task {
         convert::json(&self.task.robot())
     }
 
+    /// Physics steps in which the solver of contacts did not converge, in all environments of this task
+    /// together; None where no solver tells.
+    fn unconverged_steps(&self) -> Option<u64> {
+        self.task.unconverged_steps()
+    }
+
     /// The cases of a protocol; None at places of a fixed list that have no case.
     fn cases<'py>(
         &self,

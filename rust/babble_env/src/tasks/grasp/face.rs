@@ -84,6 +84,10 @@ impl Task for GraspTask {
         self.robot.description()
     }
 
+    fn unconverged_steps(&self) -> Option<u64> {
+        self.robot.unconverged_steps()
+    }
+
     fn shared(state: &GraspState) -> (&Progress, &Lifecycle<GraspRequest>) {
         (&state.progress, &state.lifecycle)
     }

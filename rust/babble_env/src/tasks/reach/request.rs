@@ -11,6 +11,7 @@ use super::task::ReachTask;
 use crate::case::CaseValues;
 use crate::error::EnvError;
 use crate::executor::Stop;
+use crate::options::Control;
 use crate::stream::Stream;
 
 impl ReachCase {
@@ -162,7 +163,7 @@ impl CaseRequest {
         search: &mut Search<'_>,
     ) -> Result<ReachCase, EnvError> {
         match (self.start, self.target) {
-            (None, None) => ReachCase::search_legal(task, stream, Fidelity::QuasiStatic, search),
+            (None, None) => ReachCase::search_legal(task, stream, drawn_by(task), search),
             (start, target) => draw_other_end(task, stream, start, target, search),
         }
     }
@@ -213,6 +214,15 @@ impl CaseRequest {
     }
 }
 
+/// How the movement is simulated by which a case is drawn. In `pattern` control the action is a whole
+/// movement, so one must be legal with the muscles' lag too. The other controls can wait on the way.
+const fn drawn_by(task: &ReachTask) -> Fidelity {
+    match task.options.control {
+        Control::Pattern => Fidelity::Full,
+        Control::DeltaPosture | Control::Posture | Control::Torque => Fidelity::QuasiStatic,
+    }
+}
+
 /// Draws the end that was not given, at a uniform direction and distance from the one that was.
 fn draw_other_end(
     task: &ReachTask,
@@ -243,11 +253,7 @@ fn draw_other_end(
             continue;
         };
         search.play()?;
-        if MovementPath::new(task, &case, [b1, 1.0 - b1])?.is_legal(
-            task,
-            &case,
-            Fidelity::QuasiStatic,
-        ) {
+        if MovementPath::new(task, &case, [b1, 1.0 - b1])?.is_legal(task, &case, drawn_by(task)) {
             return Ok(case);
         }
     }

@@ -56,6 +56,14 @@ RUNS = {
         "--seeds 1 --babbles 12 --cases 8",
         r"\| both, xi 0\.8 \| 6 cm \|.+\|",
     ),
+    "grasp_learning_period.py": (
+        "--seeds 1 --babbles 6 --every 60",
+        r"\| 0\.05 \| \d\.\d+ \| .+ \|",
+    ),
+    "obstacle_alone.py": (
+        "--cases 40 --tests 20 --seeds 1 --movements 20",
+        r"\| any \| \d\.\d{3} \| \d\.\d{3} \|",
+    ),
     "sac_her.py": ("--steps 4000 --cases 20", r"success 0\.\d+ \[0\.\d+, .+\]"),
 }
 ELSEWHERE = {"rllib_ppo.py"}

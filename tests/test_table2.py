@@ -110,6 +110,20 @@ def test_fig8_shows_the_agents_own_weights():
     np.testing.assert_array_equal(shown, expected)
 
 
+def test_fig8_is_a_mexican_hat():
+    # Around the peak the weights are negative, and more so than far away, as in the paper's figure.
+    hat = fig8.weights_by_distance(HebbBabbling("BabbleGrasp-v0", seed=1).learn(150))
+    surround, far = hat[3:6].mean(), hat[12:20].mean()
+    assert hat[0] > 0.15
+    assert surround < -0.03
+    assert surround < far - 0.02
+    # A rule that learns once in a babble leaves a plateau.
+    once = HebbBabbling("BabbleGrasp-v0", seed=1, brain={"learning_period_s": None}).learn(150)
+    plateau = fig8.weights_by_distance(once)
+    assert plateau[0] > 0.15
+    assert plateau[3:6].mean() > plateau[12:20].mean() - 0.01
+
+
 def test_eye_views_are_of_both_sizes():
     seen = sight.eye_views(size=63)
     assert [name for name, _ in seen] == ["2.4 cm", "6 cm"]

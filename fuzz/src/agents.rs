@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 
 use babble_agent::{AgentError, GraspNetwork, Learner, Network, ReachNetwork};
-use babble_env::Config;
 use safetensors::serialize;
 use safetensors::tensor::{Dtype, TensorView};
 use xxhash_rust::xxh3::Xxh3;
@@ -77,26 +76,26 @@ fn file(key: &str, json: &str, names: &[&str], tensors: &[Vec<u8>]) -> Vec<u8> {
 fn tried(bytes: &[u8]) -> bool {
     let mut taken = false;
     match Learner::<ReachNetwork>::load(bytes) {
-        Ok((learner, config)) => {
+        Ok(learner) => {
             let [b1, b2] = learner
                 .network
                 .decide([0.4, 0.6], [0.1, -0.2])
                 .expect("a decision");
             assert!(b1.is_finite() && b2.is_finite());
-            saved_again(&learner, config);
+            saved_again(&learner);
             taken = true;
         }
         Err(error) => named(&error),
     }
     match Learner::<GraspNetwork>::load(bytes) {
-        Ok((learner, config)) => {
+        Ok(learner) => {
             let decided = learner
                 .network
                 .decide([0.4, 0.6], &[0.5; FOVEA])
                 .expect("a decision");
             let postures = [decided.arm, decided.hand];
             assert!(postures.as_flattened().iter().all(|x| x.is_finite()));
-            saved_again(&learner, config);
+            saved_again(&learner);
             taken = true;
         }
         Err(error) => named(&error),
@@ -105,9 +104,9 @@ fn tried(bytes: &[u8]) -> bool {
 }
 
 /// An agent that is saved and read again has the same weights.
-fn saved_again<N: Network>(learner: &Learner<N>, config: Config) {
-    let saved = learner.save(config).expect("a file");
-    let (again, _) = Learner::<N>::load(&saved).expect("an agent that was saved is one");
+fn saved_again<N: Network>(learner: &Learner<N>) {
+    let saved = learner.save().expect("a file");
+    let again = Learner::<N>::load(&saved).expect("an agent that was saved is one");
     let [ours, theirs] = [learner, &again].map(|learner| learner.network.associations());
     assert_eq!(ours, theirs);
 }

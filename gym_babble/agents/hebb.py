@@ -103,7 +103,7 @@ class HebbBabbling(Planner):
         self._rule: OwnRule | None = rule if is_own(rule) else None  # type: ignore[assignment]
         babbling = {"quasi_static": True} if check_flag("quasi_static", quasi_static) else None
         self._core = _core.Learner(
-            task, json.dumps(numbers), seed, json.dumps(babbling), self._threads
+            self._interface.task, json.dumps(numbers), seed, json.dumps(babbling), self._threads
         )
         self._core.check(self._interface.task)
 
@@ -124,7 +124,8 @@ class HebbBabbling(Planner):
             babbles: Legal movements, or objects kept in the hand, to learn from; the paper's 20,000
                 or 1,000 if not given.
             progress_bar: Show a bar with the time left.
-            callback: Called with the agent as it learns; False stops.
+            callback: Called with the agent as it learns. It returns None to go on, or a truth
+                value, of which a false one stops.
             callback_every: After how many babbles that were learnt from it is called, from 1 on;
                 250 in reaching and 50 in grasping if not given.
 
@@ -132,8 +133,9 @@ class HebbBabbling(Planner):
             The agent itself.
 
         Raises:
-            ConfigError: An argument is not a whole number within its bounds, or the rule of your
-                own returns no Δw: the agent is then as after the last call of `callback`.
+            ConfigError: An argument is not a whole number within its bounds, the environment that
+                the agent acts in has another config than the agent was made with, or the rule of
+                your own returns no Δw: the agent is then as after the last call of `callback`.
             ScenarioError: Hardly any babble can be learnt from.
             BusyError: Another thread uses the agent.
         """
@@ -150,7 +152,8 @@ class HebbBabbling(Planner):
         with self._core:
             for chunk in track(chunks, "babbling", total=babbles, show=show):
                 self._core.learn(self._interface.task, chunk, rule)
-                if callback is not None and callback(self) is False:
+                go_on = None if callback is None else callback(self)
+                if go_on is not None and not go_on:
                     break
         return self
 
@@ -185,13 +188,13 @@ class HebbBabbling(Planner):
     def save(self, path: str | Path) -> None:
         """Writes the agent: weights as safetensors, all else as JSON in its metadata.
 
-        A rule of your own is not written: pass it to `load`. An earlier file is replaced once the
-        new one is complete.
+        The config is that which the agent babbles with, wherever it acts. A rule of your own is not
+        written: pass it to `load`. An earlier file is replaced once the new one is complete.
 
         Raises:
             OSError: The file cannot be written; an earlier one is whole.
         """
-        write_file(path, self._core.save(self._interface.task.config()))
+        write_file(path, self._core.save())
 
     @classmethod
     def load(
@@ -207,28 +210,27 @@ class HebbBabbling(Planner):
         Args:
             path: The file.
             env: Environment to act in; if not given, one of its task with the config that it
-                babbled with, in reaching with `pattern` control.
+                babbled with, in reaching with `pattern` control. With another config it acts, but
+                does not learn on.
             rule: The rule of your own that it learnt by, to learn on.
             threads: As for the class.
 
         Raises:
             FileNotFoundError: There is no such file.
             AgentFileError: The file is cut short, altered, or not an agent.
-            ConfigError: It cannot act in the environment.
+            ConfigError: It cannot act in the environment, or learnt by a rule of the core.
         """
         data = check_path("path", path).read_bytes()
         try:
-            core, config = _core.Learner.load(data, check_threads(threads))
+            core = _core.Learner.load(data, check_threads(threads))
         except ValueError as error:
             raise AgentFileError(f"{path}: {error}") from error
+        _check_own(rule, json.loads(core.brain())["rule"]["name"])
         agent = cls.__new__(cls)
         agent._threads, agent._rule = check_threads(threads), rule  # noqa: SLF001 - its own
         agent._core = core  # noqa: SLF001 - its own
         if env is None:
-            task = core.task()
-            agent._interface = Interface(  # noqa: SLF001 - its own
-                task, config=json.loads(config), render_mode=None, options=ACTS_IN[task]
-            )
+            agent._interface = _interface_where(core)  # noqa: SLF001 - its own
         else:
             agent._interface = interface_of(env)  # noqa: SLF001 - its own
             if agent._interface.entry.name != core.task():  # noqa: SLF001 - its own
@@ -271,10 +273,12 @@ class HebbBabbling(Planner):
         parts = {
             name: shaped(name, weights.get(name, old), old.shape) for name, old in known.items()
         }
-        with self._core:
-            for i, prefix in enumerate(self._core.prefixes()):
-                names = (f"{prefix}weights", f"{prefix}a_mean", f"{prefix}g_mean")
-                self._core.set(i, *(parts[name] for name in names))
+        self._core.set(
+            [
+                (parts[f"{prefix}weights"], parts[f"{prefix}a_mean"], parts[f"{prefix}g_mean"])
+                for prefix in self._core.prefixes()
+            ]
+        )
 
     @property
     def input_shape(self) -> tuple[int, ...]:
@@ -302,24 +306,57 @@ class HebbBabbling(Planner):
         return self._core.counts()[0]
 
     def experiences(self) -> Experiences:
-        """The babbles that it has learnt from, in their order, made again: it keeps none."""
+        """What it has learnt from, in its order, made again: it keeps none."""
         seed, babbled, _ = self._core.counts()
         options = self._core.babbling()
-        made = experiences_of(self._interface, babbled, seed, options, self._threads)
+        made = experiences_of(
+            self._babbles_in,
+            babbled,
+            seed,
+            options,
+            period_s=self.brain.get("learning_period_s"),
+            threads=self._threads,
+        )
         return made[made.learnable]
 
     @property
     def steps_per_babble(self) -> int:
         """Control steps that a babble takes."""
-        return _core.babble_steps(self._interface.task)
+        return _core.babble_steps(self._babbles_in.task)
+
+    @property
+    def _babbles_in(self) -> Interface:
+        """What it babbles in: what it acts in, or an environment of the config it was made with."""
+        same = self._core.config() == self._interface.task.config()
+        return self._interface if same else _interface_where(self._core)
 
     def __getstate__(self) -> dict[str, Any]:
-        saved = self._core.save(self._interface.task.config())
-        return {**super().__getstate__(), "_saved": saved}
+        return {**super().__getstate__(), "_saved": self._core.save()}
 
     def __setstate__(self, state: Mapping[str, Any]) -> None:
         super().__setstate__({k: v for k, v in state.items() if k != "_saved"})
-        self._core, _ = _core.Learner.load(state["_saved"], self._threads)
+        self._core = _core.Learner.load(state["_saved"], self._threads)
+
+
+def _interface_where(core: _core.Learner) -> Interface:
+    """An environment of the config that an agent babbles with."""
+    task = core.task()
+    config = json.loads(core.config())
+    return Interface(task, config=config, render_mode=None, options=ACTS_IN[task])
+
+
+def _check_own(rule: Any, name: str) -> None:
+    """Checks the rule that an agent from a file is given; its own is called `name`.
+
+    Raises:
+        ConfigError: It is not a function, or the agent learnt by a rule of the core.
+    """
+    if rule is None:
+        return
+    if not is_own(rule):
+        raise ConfigError(f"rule = {rule!r} is not a function; the file has the rules of the core")
+    if name != "own":
+        raise ConfigError(f"rule: the agent learnt by {name!r}, and not by a rule of your own")
 
 
 def _changes(brain: Any) -> dict[str, Any]:

@@ -77,6 +77,8 @@ fn played<T: Task>(mut env: Batch<T>, steps: usize, action: f32) -> Result<Vec<u
 }
 
 fn agents() -> Result<()> {
+    let reach = ReachTask::new(Config::profile("paper")?, ReachOptions::default())?;
+    let grasp = GraspTask::new(Config::profile("icub")?, GraspOptions::default())?;
     for variant in [Variant::Paper, Variant::Conjunctive] {
         let brain = ReachBrain {
             output_neurons: 2,
@@ -84,19 +86,19 @@ fn agents() -> Result<()> {
             target_neurons: 2,
             ..ReachBrain::variant(variant)
         };
-        let learner = Learner::<ReachNetwork>::new(brain, 1, ReachBabbling::default())?;
-        agent(&variant.to_string(), &learner, "paper")?;
+        let learner = Learner::<ReachNetwork>::new(brain, &reach, 1, ReachBabbling::default())?;
+        agent(&variant.to_string(), &learner)?;
     }
     let brain = GraspBrain {
         neurons: 2,
         ..GraspBrain::default()
     };
-    agent("grasp", &Learner::<GraspNetwork>::new(brain, 1, ())?, "icub")
+    agent("grasp", &Learner::<GraspNetwork>::new(brain, &grasp, 1, ())?)
 }
 
 /// What is known of an agent beside its weights.
-fn agent<N: Network>(name: &str, learner: &Learner<N>, profile: &str) -> Result<()> {
-    let file = learner.save(Config::profile(profile)?)?;
+fn agent<N: Network>(name: &str, learner: &Learner<N>) -> Result<()> {
+    let file = learner.save()?;
     let (_, header) = SafeTensors::read_metadata(&file)?;
     let text = header.metadata().as_ref().and_then(|all| all.get(N::KEY));
     let (_, fields) = text

@@ -24,7 +24,7 @@ pub(crate) fn main() -> Result<(), AgentError> {
             Config::profile("paper")?,
             &babble_env::Options::default(),
         )?;
-        let mut hebb = learner(name, brain_of(name, "paper")?, 0, Value::Null)?;
+        let mut hebb = learner(&task, brain_of(name, "paper")?, 0, Value::Null)?;
         hebb.learn(&task, babbles, executor)?;
         println!(
             "{id}: hebb learnt from {} of {} babbles",

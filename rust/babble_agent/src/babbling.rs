@@ -64,24 +64,29 @@ pub trait Babble: Task {
         + Sync
         + Serialize
         + DeserializeOwned;
-    /// What a babble leaves behind.
+    /// What a babble leaves behind at the moment in which it is learnt from.
     type Experience: Clone + PartialEq + fmt::Debug + Send + Sync;
 
     /// How many babbles it takes about until one can be learnt from: so many are made together.
     const TRIES: usize;
     /// When of so many babbles not even one can be learnt from, nothing can.
     const RAREST: u64;
+    /// Bounds of the time between two experiences of one babble \[s\]; None if each babble has one.
+    const PERIODS_S: Option<[f64; 2]>;
 
-    /// One babble. One that cannot be learnt from is None, unless `all` are asked for.
+    /// One babble: an experience at its end, or every `period_s` seconds while it moves. Those that
+    /// cannot be learnt from are left out, unless `all` are asked for; so none is left of a babble
+    /// that cannot be learnt from.
     ///
     /// # Errors
     /// An error of the task.
     fn babble(
         &self,
         options: Self::Options,
+        period_s: Option<f64>,
         stream: &mut Stream,
         all: bool,
-    ) -> Result<Option<Self::Experience>, EnvError>;
+    ) -> Result<Vec<Self::Experience>, EnvError>;
 
     /// Control steps that a babble takes.
     fn babble_steps(&self) -> usize;
@@ -101,6 +106,7 @@ pub trait Babble: Task {
 pub struct Babbling<T: Babble> {
     seed: u64,
     options: T::Options,
+    period_s: Option<f64>,
     babbled: u64,
     learnt: u64,
     task: PhantomData<fn(&T)>,
@@ -128,9 +134,30 @@ impl<T: Babble> Babbling<T> {
         Self {
             seed,
             options,
+            period_s: None,
             babbled,
             learnt,
             task: PhantomData,
+        }
+    }
+
+    /// The same with an experience every `period_s` seconds of a babble; None for one at its end.
+    ///
+    /// # Errors
+    /// [`AgentError::Config`] for a period that is not in [`Babble::PERIODS_S`].
+    pub fn every(self, period_s: Option<f64>) -> Result<Self, AgentError> {
+        let problem = match (period_s, T::PERIODS_S) {
+            (None, _) => None,
+            (Some(s), Some([low, high])) if (low..=high).contains(&s) => None,
+            (Some(s), Some([low, high])) => Some(format!("{s} is not in [{low}, {high}] s")),
+            (Some(s), None) => Some(format!("{s}: a movement of this task is learnt from once")),
+        };
+        match problem {
+            None => Ok(Self { period_s, ..self }),
+            Some(problem) => Err(AgentError::Config {
+                field: "learning_period_s",
+                problem,
+            }),
         }
     }
 
@@ -159,7 +186,7 @@ impl<T: Babble> Babbling<T> {
         self.learnt
     }
 
-    /// Babbles until `n` more can be learnt from, and returns these.
+    /// Babbles until `n` more can be learnt from, and returns what these leave behind, in its order.
     ///
     /// # Errors
     /// [`AgentError::NothingToLearn`] when such babbles are too rare, or an error of the task or the
@@ -182,17 +209,18 @@ impl<T: Babble> Babbling<T> {
         n: usize,
         executor: &mut Executor,
     ) -> Result<Vec<T::Experience>, AgentError> {
-        let mut found = Vec::with_capacity(n);
-        while found.len() < n {
-            let count = CHUNK.min((n - found.len()).saturating_mul(T::TRIES));
-            for experience in self.some(task, count, false, executor)? {
-                if found.len() == n {
+        let (mut left, mut found) = (n, Vec::with_capacity(n));
+        while left > 0 {
+            let count = CHUNK.min(left.saturating_mul(T::TRIES));
+            for experiences in self.some(task, count, false, executor)? {
+                if left == 0 {
                     break;
                 }
                 self.babbled += 1;
-                if let Some(experience) = experience {
+                if !experiences.is_empty() {
                     self.learnt += 1;
-                    found.push(experience);
+                    left -= 1;
+                    found.extend(experiences);
                 }
             }
             if self.babbled > T::RAREST * (self.learnt + 1) {
@@ -212,27 +240,24 @@ impl<T: Babble> Babbling<T> {
         n: usize,
         all: bool,
         executor: &mut Executor,
-    ) -> Result<Vec<Option<T::Experience>>, EnvError> {
+    ) -> Result<Vec<Vec<T::Experience>>, EnvError> {
         executor.map(0..n, |i, _| {
             let mut stream = Stream::new(Purpose::Learning, self.seed, self.babbled + i as u64);
-            task.babble(self.options, &mut stream, all)
+            task.babble(self.options, self.period_s, &mut stream, all)
         })
     }
 }
 
-/// The first `n` babbles of a seed, whether they can be learnt from or not. Babble k is that of
-/// [`Babbling`].
+/// What each of the next `n` babbles leaves behind, whether it can be learnt from or not. Babble k is
+/// that of `babbling`, which does not move on.
 ///
 /// # Errors
 /// An error of the task or the executor.
 pub fn babble<T: Babble>(
+    babbling: &Babbling<T>,
     task: &T,
     n: usize,
-    seed: u64,
-    options: T::Options,
     executor: &mut Executor,
-) -> Result<Vec<T::Experience>, AgentError> {
-    let babbling = Babbling::<T>::new(seed, options);
-    let made = babbling.some(task, n, true, executor)?;
-    Ok(made.into_iter().flatten().collect())
+) -> Result<Vec<Vec<T::Experience>>, AgentError> {
+    Ok(babbling.some(task, n, true, executor)?)
 }

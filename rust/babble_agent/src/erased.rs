@@ -3,13 +3,14 @@
 
 use std::any::Any;
 use std::fmt;
+use std::iter;
 use std::sync::Arc;
 
 use babble_brain::Association;
 use babble_env::{AnyTask, Config, Executor, GraspTask, Outcome, ReachTask, Task, downcast};
 use serde_json::Value;
 
-use crate::babbling::{Babble, Column, babble};
+use crate::babbling::{Babble, Babbling, Column, babble};
 use crate::error::AgentError;
 use crate::grasp::policy::{self as grasping, GraspPolicy, RandomActions};
 use crate::grasp::{self, GraspNetwork};
@@ -76,6 +77,9 @@ pub trait AnyLearner: Any + fmt::Debug + Send + Sync {
     /// Name of its task in the registry.
     fn task(&self) -> &'static str;
 
+    /// As [`Learner::config`].
+    fn config(&self) -> &Config;
+
     /// Numbers of maps and rule, as JSON.
     fn brain(&self) -> Result<Value, AgentError>;
 
@@ -111,14 +115,8 @@ pub trait AnyLearner: Any + fmt::Debug + Send + Sync {
     /// Names of the associations' tensors, and the associations.
     fn associations(&self) -> Vec<(&'static str, &Association)>;
 
-    /// As [`Network::set`].
-    fn set(
-        &mut self,
-        association: usize,
-        weights: &[f32],
-        a_mean: &[f32],
-        g_mean: &[f32],
-    ) -> Result<(), AgentError>;
+    /// As [`Network::set`], for all associations in their order; all or nothing.
+    fn set(&mut self, parts: &[[Vec<f32>; 3]]) -> Result<(), AgentError>;
 
     /// As [`Network::input_shapes`].
     fn input_shapes(&self) -> Vec<Vec<usize>>;
@@ -133,12 +131,16 @@ pub trait AnyLearner: Any + fmt::Debug + Send + Sync {
     fn policy(&self, task: &Arc<dyn AnyTask>) -> Result<Box<dyn Policy + '_>, AgentError>;
 
     /// As [`Learner::save`].
-    fn save(&self, config: Config) -> Result<Vec<u8>, AgentError>;
+    fn save(&self) -> Result<Vec<u8>, AgentError>;
 }
 
 impl<N: Network> AnyLearner for Learner<N> {
     fn task(&self) -> &'static str {
         N::TASK
+    }
+
+    fn config(&self) -> &Config {
+        Self::config(self)
     }
 
     fn brain(&self) -> Result<Value, AgentError> {
@@ -187,14 +189,13 @@ impl<N: Network> AnyLearner for Learner<N> {
         names.zip(self.network.associations()).collect()
     }
 
-    fn set(
-        &mut self,
-        association: usize,
-        weights: &[f32],
-        a_mean: &[f32],
-        g_mean: &[f32],
-    ) -> Result<(), AgentError> {
-        self.network.set(association, weights, a_mean, g_mean)
+    fn set(&mut self, parts: &[[Vec<f32>; 3]]) -> Result<(), AgentError> {
+        let mut changed = self.network.clone();
+        for (i, [weights, a_mean, g_mean]) in parts.iter().enumerate() {
+            changed.set(i, weights, a_mean, g_mean)?;
+        }
+        self.network = changed;
+        Ok(())
     }
 
     fn input_shapes(&self) -> Vec<Vec<usize>> {
@@ -214,27 +215,27 @@ impl<N: Network> AnyLearner for Learner<N> {
         self.network.policy(task)
     }
 
-    fn save(&self, config: Config) -> Result<Vec<u8>, AgentError> {
-        Self::save(self, config)
+    fn save(&self) -> Result<Vec<u8>, AgentError> {
+        Self::save(self)
     }
 }
 
-/// A learner for a task of the registry, by its name; `brain` are numbers of maps and rule, `options`
-/// say how it babbles, both as JSON.
+/// A learner for a task of any kind; `brain` are numbers of maps and rule, `options` say how it babbles,
+/// both as JSON.
 ///
 /// # Errors
 /// [`AgentError::Config`] naming the task or the number.
 pub fn learner(
-    task: &str,
+    task: &Arc<dyn AnyTask>,
     brain: Value,
     seed: u64,
     options: Value,
 ) -> Result<Box<dyn AnyLearner>, AgentError> {
-    match task {
-        ReachNetwork::TASK => made::<ReachNetwork>(brain, seed, options),
-        GraspNetwork::TASK => made::<GraspNetwork>(brain, seed, options),
-        _ => Err(no_learner(task)),
+    if let Some(task) = downcast::<ReachTask>(task) {
+        return made::<ReachNetwork>(&task, brain, seed, options);
     }
+    let task = downcast::<GraspTask>(task).ok_or_else(other_task)?;
+    made::<GraspNetwork>(&task, brain, seed, options)
 }
 
 /// The numbers of maps and rule of a variant, as JSON.
@@ -258,16 +259,17 @@ fn no_learner(task: &str) -> AgentError {
 }
 
 fn made<N: Network>(
+    task: &N::Task,
     brain: Value,
     seed: u64,
     options: Value,
 ) -> Result<Box<dyn AnyLearner>, AgentError> {
-    let brain = serde_json::from_value(brain).map_err(|error| AgentError::Config {
+    let brain = serde_path_to_error::deserialize(brain).map_err(|error| AgentError::Config {
         field: "brain",
         problem: error.to_string(),
     })?;
     let options = options_of::<N::Task>(options)?;
-    Ok(Box::new(Learner::<N>::new(brain, seed, options)?))
+    Ok(Box::new(Learner::<N>::new(brain, task, seed, options)?))
 }
 
 /// How to babble, from JSON; null stands for the defaults.
@@ -281,19 +283,17 @@ fn options_of<T: Babble>(options: Value) -> Result<T::Options, AgentError> {
     })
 }
 
-/// The learner in a file's bytes, of whichever task, and the config of its task.
+/// The learner in a file's bytes, of whichever task.
 ///
 /// # Errors
 /// As [`Learner::load`].
-pub fn load(bytes: &[u8]) -> Result<(Box<dyn AnyLearner>, Config), AgentError> {
+pub fn load(bytes: &[u8]) -> Result<Box<dyn AnyLearner>, AgentError> {
     let keys = tensors::keys(bytes)?;
     if keys.iter().any(|key| key == ReachNetwork::KEY) {
-        let (learner, config) = Learner::<ReachNetwork>::load(bytes)?;
-        return Ok((Box::new(learner), config));
+        return Ok(Box::new(Learner::<ReachNetwork>::load(bytes)?));
     }
     if keys.iter().any(|key| key == GraspNetwork::KEY) {
-        let (learner, config) = Learner::<GraspNetwork>::load(bytes)?;
-        return Ok((Box::new(learner), config));
+        return Ok(Box::new(Learner::<GraspNetwork>::load(bytes)?));
     }
     Err(AgentError::File {
         problem: "a safetensors file, but without an agent of gym_babble in its metadata"
@@ -301,34 +301,41 @@ pub fn load(bytes: &[u8]) -> Result<(Box<dyn AnyLearner>, Config), AgentError> {
     })
 }
 
-/// What babbles of any task left behind, column by column.
+/// What babbles of any task left behind, column by column; several experiences of a babble follow each
+/// other.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Experiences {
     /// What was seen, and done, and what the case was.
     pub columns: Vec<Column>,
-    /// Which babbles can be learnt from.
+    /// Which babble each experience is of.
+    pub babbles: Vec<u64>,
+    /// Which experiences can be learnt from.
     pub learnable: Vec<bool>,
-    /// How each ended.
+    /// How the babble of each ended.
     pub outcomes: Vec<Outcome>,
 }
 
-/// The first `n` babbles of a seed in a task of any kind, as [`babble`](crate::babble).
+/// The first `n` babbles of a seed in a task of any kind, with an experience at the end of each or every
+/// `period_s` seconds.
 ///
 /// # Errors
-/// [`AgentError::Config`] for a task without babbles or options that it does not have; an error of the
-/// task or the executor.
+/// [`AgentError::Config`] for a task without babbles, or options or a period that it does not have; an
+/// error of the task or the executor.
 pub fn babble_any(
     task: &Arc<dyn AnyTask>,
     n: usize,
     seed: u64,
     options: Value,
+    period_s: Option<f64>,
     executor: &mut Executor,
 ) -> Result<Experiences, AgentError> {
     if let Some(task) = downcast::<ReachTask>(task) {
-        return columns(&*task, n, seed, options, executor);
+        let babbling = Babbling::new(seed, options_of::<ReachTask>(options)?).every(period_s)?;
+        return columns(&babbling, &*task, n, executor);
     }
     let task = downcast::<GraspTask>(task).ok_or_else(other_task)?;
-    columns(&*task, n, seed, options, executor)
+    let babbling = Babbling::new(seed, options_of::<GraspTask>(options)?).every(period_s)?;
+    columns(&babbling, &*task, n, executor)
 }
 
 /// Control steps that a babble takes in a task of any kind.
@@ -344,15 +351,19 @@ pub fn babble_steps(task: &Arc<dyn AnyTask>) -> Result<usize, AgentError> {
 }
 
 fn columns<T: Babble + Task>(
+    babbling: &Babbling<T>,
     task: &T,
     n: usize,
-    seed: u64,
-    options: Value,
     executor: &mut Executor,
 ) -> Result<Experiences, AgentError> {
-    let options = options_of::<T>(options)?;
-    let all = babble(task, n, seed, options, executor)?;
+    let made = babble(babbling, task, n, executor)?;
+    let babbles = (0..)
+        .zip(&made)
+        .flat_map(|(k, one)| iter::repeat_n(k, one.len()));
+    let babbles = babbles.collect();
+    let all = made.concat();
     Ok(Experiences {
+        babbles,
         columns: T::columns(&all),
         learnable: all.iter().map(T::is_learnable).collect(),
         outcomes: all.iter().map(T::outcome).collect(),

@@ -30,6 +30,19 @@ pub enum AgentError {
         /// Babbles made.
         babbled: u64,
     },
+    /// An agent is to go on learning on another config than it has babbled on.
+    #[error(
+        "config: {field} = {here} is not the agent's {there}: it goes on learning only on the config \
+         that it was made with"
+    )]
+    OtherConfig {
+        /// Path of the field.
+        field: String,
+        /// Its value now.
+        here: String,
+        /// Its value in the agent's config.
+        there: String,
+    },
     /// A rule of the user's own failed.
     #[error("rule: {problem}")]
     Rule {

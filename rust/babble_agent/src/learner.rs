@@ -1,6 +1,6 @@
 //! A network and the babbling that it learns from.
 
-use babble_env::{Config, Executor};
+use babble_env::{Config, Executor, Task};
 use serde::{Deserialize, Serialize};
 
 use crate::babbling::{Babble, Babbling};
@@ -10,9 +10,15 @@ use crate::rule::RuleOfOnesOwn;
 use crate::tensors;
 
 /// Version of the files.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
+/// Babbles that are remembered until they are learnt from together.
+const BABBLES: usize = 128;
 /// Experiences that are encoded and learnt together.
 const CHUNK: usize = 256;
+/// More babbles than anybody makes: at 1 ms each they take 30 years.
+const MOST_BABBLES: u64 = 1_000_000_000_000;
+
+type ExperienceOf<N> = <<N as Network>::Task as Babble>::Experience;
 
 /// A network that learns by babbling.
 #[derive(Debug)]
@@ -21,6 +27,8 @@ pub struct Learner<N: Network> {
     pub network: N,
     /// The sequence of babbles that it learns from.
     pub babbling: Babbling<N::Task>,
+    /// Body and task that it babbles with.
+    config: Config,
 }
 
 // Derived, it would ask for a task that can be copied.
@@ -29,6 +37,7 @@ impl<N: Network> Clone for Learner<N> {
         Self {
             network: self.network.clone(),
             babbling: self.babbling,
+            config: self.config.clone(),
         }
     }
 }
@@ -54,53 +63,62 @@ struct Metadata<C, O> {
 }
 
 impl<N: Network> Learner<N> {
-    /// A learner that has not babbled yet.
+    /// A learner that has not babbled yet, of `brain`, in the config of a task.
     ///
     /// # Errors
-    /// [`AgentError`] naming the number of the config that is out of bounds.
+    /// [`AgentError`] naming the number of the brain that is out of bounds.
     pub fn new(
-        config: N::Config,
+        brain: N::Config,
+        task: &N::Task,
         seed: u64,
         options: <N::Task as Babble>::Options,
     ) -> Result<Self, AgentError> {
+        let network = N::new(brain)?;
+        let babbling = Babbling::new(seed, options).every(network.learning_period_s())?;
+        let config = task.config().clone();
         Ok(Self {
-            network: N::new(config)?,
-            babbling: Babbling::new(seed, options),
+            network,
+            babbling,
+            config,
         })
+    }
+
+    /// Body and task that it babbles with.
+    #[must_use]
+    pub const fn config(&self) -> &Config {
+        &self.config
     }
 
     /// Babbles until `n` more babbles can be learnt from, and learns from these.
     ///
     /// # Errors
-    /// As [`Babbling::experience`] and [`Network::learn`]; the learner is then as it was.
+    /// [`AgentError::OtherConfig`] for a task of another config than the learner's, or as
+    /// [`Babbling::experience`] and [`Network::learn`]; the learner is then as it was.
     pub fn learn(
         &mut self,
         task: &N::Task,
         n: usize,
         executor: &mut Executor,
     ) -> Result<(), AgentError> {
-        let mut babbling = self.babbling;
-        let experiences = babbling.experience(task, n, executor)?;
-        let network = &mut self.network;
-        let taught = || {
-            let mut chunks = experiences.chunks(CHUNK);
-            chunks.try_for_each(|chunk| network.learn(chunk))
-        };
-        #[cfg(feature = "threads")]
-        executor.run(taught)??;
-        #[cfg(not(feature = "threads"))]
-        {
-            let mut taught = taught;
-            taught()?;
-        }
-        self.babbling = babbling;
-        Ok(())
+        self.taught(task, n, executor, |network, experiences, executor| {
+            let taught = || {
+                let mut chunks = experiences.chunks(CHUNK);
+                chunks.try_for_each(|chunk| network.learn(chunk))
+            };
+            #[cfg(feature = "threads")]
+            return executor.run(taught)?;
+            #[cfg(not(feature = "threads"))]
+            {
+                let (_, mut taught) = (executor, taught);
+                taught()
+            }
+        })
     }
 
     /// The same, by a rule of the user's own.
     ///
     /// # Errors
-    /// As [`Babbling::experience`] and [`Network::learn_by`]; the learner is then as it was.
+    /// As [`Self::learn`] and [`Network::learn_by`]; the learner is then as it was.
     pub fn learn_by(
         &mut self,
         rule: &mut RuleOfOnesOwn<'_>,
@@ -108,24 +126,45 @@ impl<N: Network> Learner<N> {
         n: usize,
         executor: &mut Executor,
     ) -> Result<(), AgentError> {
+        self.taught(task, n, executor, |network, experiences, _| {
+            let mut chunks = experiences.chunks(CHUNK);
+            chunks.try_for_each(|chunk| network.learn_by(rule, chunk))
+        })
+    }
+
+    /// Babbles until `n` more babbles can be learnt from, and lets `teach` teach them, some at a time;
+    /// all or nothing.
+    fn taught(
+        &mut self,
+        task: &N::Task,
+        n: usize,
+        executor: &mut Executor,
+        mut teach: impl FnMut(&mut N, &[ExperienceOf<N>], &mut Executor) -> Result<(), AgentError>,
+    ) -> Result<(), AgentError> {
+        if let Some([field, here, there]) = task.config().difference(&self.config)? {
+            return Err(AgentError::OtherConfig { field, here, there });
+        }
         let mut learning = self.clone();
-        let experiences = learning.babbling.experience(task, n, executor)?;
-        for chunk in experiences.chunks(CHUNK) {
-            learning.network.learn_by(rule, chunk)?;
+        let mut left = n;
+        while left > 0 {
+            let some = left.min(BABBLES);
+            let experiences = learning.babbling.experience(task, some, executor)?;
+            teach(&mut learning.network, &experiences, executor)?;
+            left -= some;
         }
         *self = learning;
         Ok(())
     }
 
-    /// The learner as the bytes of a safetensors file; `config` is that of its task.
+    /// The learner as the bytes of a safetensors file.
     ///
     /// # Errors
     /// [`AgentError::File`] if it cannot be written.
-    pub fn save(&self, config: Config) -> Result<Vec<u8>, AgentError> {
+    pub fn save(&self) -> Result<Vec<u8>, AgentError> {
         let metadata = Metadata {
             version: VERSION,
             brain: self.network.config().clone(),
-            config,
+            config: self.config.clone(),
             seed: self.babbling.seed(),
             babbling: self.babbling.options(),
             babbled: self.babbling.babbled(),
@@ -140,12 +179,12 @@ impl<N: Network> Learner<N> {
         tensors::write(N::KEY, &metadata, &parts)
     }
 
-    /// The learner in a file's bytes, and the config of its task.
+    /// The learner in a file's bytes.
     ///
     /// # Errors
-    /// [`AgentError::File`] for bytes that are cut short, altered, no such learner, or of another
-    /// version; [`AgentError`] for weights that do not fit the maps.
-    pub fn load(bytes: &[u8]) -> Result<(Self, Config), AgentError> {
+    /// [`AgentError::File`] for bytes that are cut short, altered, no such learner, of another version,
+    /// or with a field that no learner has; [`AgentError`] for weights that do not fit the maps.
+    pub fn load(bytes: &[u8]) -> Result<Self, AgentError> {
         let names: Vec<String> = N::PREFIXES
             .iter()
             .flat_map(|prefix| tensors::names(prefix))
@@ -153,7 +192,9 @@ impl<N: Network> Learner<N> {
         let (json, values) = tensors::read(N::KEY, bytes, &names)?;
         check_version(&json)?;
         let metadata: Metadata<N::Config, <N::Task as Babble>::Options> =
-            serde_json::from_str(&json).map_err(|e| tensors::file(&e))?;
+            serde_path_to_error::deserialize(&mut serde_json::Deserializer::from_str(&json))
+                .map_err(|e| tensors::file(&e))?;
+        metadata.check_counts(<N::Task as Babble>::RAREST)?;
         metadata.config.validate()?;
         let mut network = N::new(metadata.brain)?;
         for (i, [weights, a_mean, g_mean]) in values.as_chunks::<3>().0.iter().enumerate() {
@@ -164,8 +205,32 @@ impl<N: Network> Learner<N> {
                 })?;
         }
         let (babbled, learnt) = (metadata.babbled, metadata.learnt);
-        let babbling = Babbling::resume(metadata.seed, metadata.babbling, babbled, learnt);
-        Ok((Self { network, babbling }, metadata.config))
+        let babbling = Babbling::resume(metadata.seed, metadata.babbling, babbled, learnt)
+            .every(network.learning_period_s())?;
+        Ok(Self {
+            network,
+            babbling,
+            config: metadata.config,
+        })
+    }
+}
+
+impl<C, O> Metadata<C, O> {
+    /// Checks that babbling can have made and learnt so many babbles.
+    fn check_counts(&self, rarest: u64) -> Result<(), AgentError> {
+        let Self {
+            babbled, learnt, ..
+        } = *self;
+        let problem = if babbled > MOST_BABBLES {
+            format!("babbled = {babbled} is more than {MOST_BABBLES}")
+        } else if learnt > babbled {
+            format!("learnt = {learnt} is more than babbled = {babbled}")
+        } else if babbled > rarest * (learnt + 1) {
+            format!("babbled = {babbled} is more than possible with learnt = {learnt}")
+        } else {
+            return Ok(());
+        };
+        Err(AgentError::File { problem })
     }
 }
 

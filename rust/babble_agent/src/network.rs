@@ -64,6 +64,11 @@ pub trait Network: Clone + Send + Sync + fmt::Debug + 'static {
     /// The rule it learns by.
     fn rule(&self) -> &Rule;
 
+    /// Time between two applications of the rule while a babble moves \[s\]; None for one, at its end.
+    fn learning_period_s(&self) -> Option<f64> {
+        None
+    }
+
     /// The associations, in the order of their prefixes.
     fn associations(&self) -> Vec<&Association>;
 

@@ -81,17 +81,24 @@ fn babbling_resumes() {
     assert_ne!(other.experience(&task, 30, &mut pool).unwrap(), first);
 }
 
+fn babble_all(options: ReachBabbling, n: usize, threads: usize) -> Vec<Experience> {
+    let babbling = Babbling::new(4, options);
+    let made = babble(&babbling, &task(), n, &mut pool(threads)).unwrap();
+    assert_eq!(made.len(), n);
+    made.concat()
+}
+
 /// Babbles of a seed, legal or not, are those that learning takes its experiences from, in their order,
 /// on any number of threads. Catches a percept that depends on whether a movement was legal.
 #[test]
 fn babbles_hold_the_experiences() {
     for options in [FULL, QUASI_STATIC] {
         let (legal, babbled) = experience(options, &[20], 2);
-        let all = babble(&task(), babbled as usize, 4, options, &mut pool(2)).unwrap();
+        let all = babble_all(options, babbled as usize, 2);
         assert_eq!(all.len(), babbled as usize);
         let found: Vec<_> = all.iter().copied().filter(Experience::is_legal).collect();
         assert_eq!(found, legal);
-        let one = babble(&task(), 9, 4, options, &mut pool(1)).unwrap();
+        let one = babble_all(options, 9, 1);
         assert_eq!(one, all[..9]);
         assert!(all.iter().any(|one| one.outcome == Outcome::JointLimit));
     }
@@ -106,7 +113,7 @@ fn a_learner_may_be_watched_as_often_as_one_likes() {
             rule: rule.parse().unwrap(),
             ..ReachBrain::variant(Variant::Paper)
         };
-        let new = || Learner::<ReachNetwork>::new(brain.clone(), 4, QUASI_STATIC).unwrap();
+        let new = || Learner::<ReachNetwork>::new(brain.clone(), &task(), 4, QUASI_STATIC).unwrap();
         let (mut whole, mut watched) = (new(), new());
         whole.learn(&task(), 12, &mut pool(2)).unwrap();
         for _ in 0..12 {
@@ -131,9 +138,9 @@ fn a_rule_of_ones_own_learns_all_or_nothing() {
         rule: Rule::own(),
         ..ReachBrain::variant(Variant::Paper)
     };
-    let mut theirs = Learner::<ReachNetwork>::new(own, 4, QUASI_STATIC).unwrap();
-    let mut ours =
-        Learner::<ReachNetwork>::new(ReachBrain::variant(Variant::Paper), 4, QUASI_STATIC).unwrap();
+    let mut theirs = Learner::<ReachNetwork>::new(own, &task(), 4, QUASI_STATIC).unwrap();
+    let paper = ReachBrain::variant(Variant::Paper);
+    let mut ours = Learner::<ReachNetwork>::new(paper, &task(), 4, QUASI_STATIC).unwrap();
     let (task, mut pool) = (task(), pool(2));
     assert!(matches!(
         theirs.learn(&task, 1, &mut pool),

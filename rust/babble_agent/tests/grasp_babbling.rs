@@ -6,7 +6,7 @@ use babble_agent::grasp::Experience;
 use babble_agent::grasp::holding::trials;
 use babble_agent::{AgentError, Babbling, GraspBrain, GraspNetwork, Network, babble};
 use babble_brain::{MapConfig, PopulationMap};
-use babble_env::tasks::grasp::{FOVEA_NEURONS, GraspCase};
+use babble_env::tasks::grasp::{FOVEA_NEURONS, GraspCase, at};
 use babble_env::{Autoreset, Batch, Config, EnvError, Executor, GraspOptions, GraspTask, Outcome};
 
 const DIAMETERS: [f64; 2] = [0.024, 0.06];
@@ -70,16 +70,60 @@ fn babbling_resumes() {
 #[test]
 fn babbles_hold_the_experiences() {
     let (kept, babbled) = experience(4, &[6], 2);
-    let all = babble(&task(), babbled as usize, 4, (), &mut pool(2)).unwrap();
+    let all = babble(
+        &Babbling::new(4, ()),
+        &task(),
+        babbled as usize,
+        &mut pool(2),
+    )
+    .unwrap();
+    let all = all.concat();
     let found: Vec<_> = all.iter().filter(|one| one.is_kept()).cloned().collect();
     assert_eq!(found, kept);
     let open = task_with(r#"{"body": {"grip": {"reflex_deg": [0, 0]}}}"#);
-    let lost = babble(&open, 3, 4, (), &mut pool(2)).unwrap();
+    let lost = babble(&Babbling::new(4, ()), &open, 3, &mut pool(2)).unwrap();
+    let lost = lost.concat();
     assert_eq!(lost.len(), 3);
     assert!(
         lost.iter()
             .all(|one| one.outcome == Outcome::Lost && !one.is_kept())
     );
+}
+
+/// With a period, a babble leaves an experience after each period of its movement: the arm is elsewhere at
+/// each, the object the same, and the last is that of the same babble without one. Any number of threads
+/// and any portions give the same. Catches a period that changes the movement, and experiences of a babble
+/// that come in another order.
+#[test]
+fn a_babble_can_be_learnt_from_along_its_movement() {
+    let along = |portions: &[usize], threads: usize| {
+        let (task, mut pool) = (task(), pool(threads));
+        let mut babbling = Babbling::new(4, ()).every(Some(0.5)).unwrap();
+        let each = portions.iter();
+        let each = each.map(|&n| babbling.experience(&task, n, &mut pool).unwrap());
+        let all: Vec<Experience> = each.flatten().collect();
+        (all, babbling.babbled())
+    };
+    let (all, babbled) = along(&[9], 1);
+    assert_eq!(along(&[9], 2), (all.clone(), babbled));
+    assert_eq!(along(&[9], 8), (all.clone(), babbled));
+    assert_eq!(along(&[1, 5, 3], 2), (all.clone(), babbled));
+    let (ends, once) = experience(4, &[9], 2);
+    assert_eq!(once, babbled);
+    // Three postures of two seconds.
+    assert_eq!(all.len(), 9 * 12);
+    for (along, end) in all.chunks(12).zip(&ends) {
+        assert_eq!(&along[11], end);
+        for two in along.windows(2) {
+            assert!(two[0].arm != two[1].arm && two[0].eye != two[1].eye);
+            assert_eq!(two[0].diameter, two[1].diameter);
+        }
+    }
+    let too_long = Babbling::<GraspTask>::new(4, ()).every(Some(2.5));
+    for refused in [too_long, Babbling::new(4, ()).every(Some(f64::NAN))] {
+        let error = refused.unwrap_err().to_string();
+        assert!(error.contains("learning_period_s"), "{error}");
+    }
 }
 
 /// An open hand closes around the object that is put before its palm, which is of either size; the
@@ -317,9 +361,13 @@ fn sight_recalls_arm_and_hand() {
     let seen: Vec<(GraspCase, [f32; 2], Vec<f32>)> = (0..40)
         .zip(env.records())
         .map(|(i, record)| {
-            let (eye, rest) = record.senses.split_first_chunk().unwrap();
+            let eye = [at::EYE, at::EYE + 1].map(|i| record.senses[i]);
             let case = env.state(i).unwrap().case;
-            (case, *eye, rest[..FOVEA_NEURONS].to_vec())
+            (
+                case,
+                eye,
+                record.senses[at::FOVEA..][..FOVEA_NEURONS].to_vec(),
+            )
         })
         .collect();
     let mut hebb = GraspNetwork::new(GraspBrain::default()).unwrap();

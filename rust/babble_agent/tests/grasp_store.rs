@@ -5,7 +5,7 @@ use babble_agent::{
     AgentError, GraspBrain, GraspNetwork, Learner, Network, ReachBabbling, ReachBrain,
     ReachNetwork, Variant,
 };
-use babble_env::{Config, Executor, GraspOptions, GraspTask, Outcome};
+use babble_env::{Config, Executor, GraspOptions, GraspTask, Outcome, ReachOptions, ReachTask};
 
 /// A small agent that has learnt a little, its task, and its file.
 fn agent() -> (Learner<GraspNetwork>, GraspTask, Vec<u8>) {
@@ -16,15 +16,15 @@ fn agent() -> (Learner<GraspNetwork>, GraspTask, Vec<u8>) {
         squeeze_deg: 12.5,
         ..GraspBrain::default()
     };
-    let mut learner = Learner::new(brain, u64::MAX, ()).unwrap();
+    let mut learner = Learner::new(brain, &task, u64::MAX, ()).unwrap();
     learner
         .learn(&task, 6, &mut Executor::new(2).unwrap())
         .unwrap();
-    let bytes = learner.save(task.config.clone()).unwrap();
+    let bytes = learner.save().unwrap();
     (learner, task, bytes)
 }
 
-fn load(bytes: &[u8]) -> Result<(Learner<GraspNetwork>, Config), AgentError> {
+fn load(bytes: &[u8]) -> Result<Learner<GraspNetwork>, AgentError> {
     Learner::load(bytes)
 }
 
@@ -33,7 +33,7 @@ fn refused(bytes: &[u8]) -> String {
         Err(AgentError::File { problem }) => problem,
         other => panic!(
             "expected a refusal, got {:?}",
-            other.map(|(_, config)| config)
+            other.map(|learner| learner.babbling)
         ),
     }
 }
@@ -44,8 +44,8 @@ fn refused(bytes: &[u8]) -> String {
 #[test]
 fn round_trip_keeps_every_bit() {
     let (mut learner, task, bytes) = agent();
-    let (mut loaded, config) = load(&bytes).unwrap();
-    assert_eq!(config, task.config);
+    let mut loaded = load(&bytes).unwrap();
+    assert_eq!(*loaded.config(), task.config);
     let counts = |learner: &Learner<GraspNetwork>| {
         let babbling = &learner.babbling;
         (babbling.seed(), babbling.babbled(), babbling.learnt())
@@ -67,7 +67,7 @@ fn round_trip_keeps_every_bit() {
     }];
     ours.learn(&more).unwrap();
     theirs.learn(&more).unwrap();
-    let again = |learner: &Learner<GraspNetwork>| learner.save(config.clone()).unwrap();
+    let again = |learner: &Learner<GraspNetwork>| learner.save().unwrap();
     assert_eq!(again(&loaded), again(&learner));
     assert_ne!(again(&loaded), bytes);
 }
@@ -76,7 +76,7 @@ fn round_trip_keeps_every_bit() {
 #[test]
 fn babbling_goes_on_from_a_file() {
     let (mut learner, task, bytes) = agent();
-    let (mut loaded, _) = load(&bytes).unwrap();
+    let mut loaded = load(&bytes).unwrap();
     let mut pool = Executor::new(2).unwrap();
     learner.learn(&task, 3, &mut pool).unwrap();
     loaded.learn(&task, 3, &mut pool).unwrap();
@@ -114,15 +114,17 @@ fn altered_files_are_refused() {
 fn foreign_files_are_refused() {
     refused(b"");
     refused(b"PK\x03\x04 a zip archive");
-    let (_, task, bytes) = agent();
+    let (.., bytes) = agent();
+    let reach = ReachTask::new(Config::profile("paper").unwrap(), ReachOptions::default()).unwrap();
     let brain = ReachBrain {
         output_neurons: 5,
         obstacle_neurons: 4,
         target_neurons: 3,
         ..ReachBrain::variant(Variant::Conjunctive)
     };
-    let reaching = Learner::<ReachNetwork>::new(brain, 0, ReachBabbling::default()).unwrap();
-    let theirs = reaching.save(task.config).unwrap();
+    let reaching =
+        Learner::<ReachNetwork>::new(brain, &reach, 0, ReachBabbling::default()).unwrap();
+    let theirs = reaching.save().unwrap();
     assert!(refused(&theirs).contains("gym_babble.grasp"));
     let reached = Learner::<ReachNetwork>::load(&bytes);
     assert!(matches!(reached, Err(AgentError::File { .. })));

@@ -1,13 +1,20 @@
 //! Learned agents of reaching as files.
 
+use std::collections::HashMap;
+use std::sync::Arc;
+
 use babble_agent::reach::Experience;
 use babble_agent::{
     AgentError, Learner, Network, ReachBabbling, ReachBrain, ReachNetwork, Variant,
 };
 use babble_env::{Config, Executor, Outcome, ReachOptions, ReachTask};
+use safetensors::{SafeTensors, serialize};
+use xxhash_rust::xxh3::Xxh3;
 
-/// A small agent that has learnt a little, the config of its task, and its file.
-fn agent() -> (Learner<ReachNetwork>, Config, Vec<u8>) {
+const QUASI_STATIC: ReachBabbling = ReachBabbling { quasi_static: true };
+
+/// A small agent that has learnt a little, the task, and its file.
+fn agent() -> (Learner<ReachNetwork>, ReachTask, Vec<u8>) {
     let brain = ReachBrain {
         output_neurons: 5,
         obstacle_neurons: 4,
@@ -15,15 +22,15 @@ fn agent() -> (Learner<ReachNetwork>, Config, Vec<u8>) {
         ..ReachBrain::variant(Variant::Conjunctive)
     };
     let task = ReachTask::new(Config::profile("icub").unwrap(), ReachOptions::default()).unwrap();
-    let mut learner = Learner::new(brain, u64::MAX, ReachBabbling { quasi_static: true }).unwrap();
+    let mut learner = Learner::new(brain, &task, u64::MAX, QUASI_STATIC).unwrap();
     learner
         .learn(&task, 20, &mut Executor::new(2).unwrap())
         .unwrap();
-    let bytes = learner.save(task.config.clone()).unwrap();
-    (learner, task.config, bytes)
+    let bytes = learner.save().unwrap();
+    (learner, task, bytes)
 }
 
-fn load(bytes: &[u8]) -> Result<(Learner<ReachNetwork>, Config), AgentError> {
+fn load(bytes: &[u8]) -> Result<Learner<ReachNetwork>, AgentError> {
     Learner::load(bytes)
 }
 
@@ -32,7 +39,7 @@ fn refused(bytes: &[u8]) -> String {
         Err(AgentError::File { problem }) => problem,
         other => panic!(
             "expected a refusal, got {:?}",
-            other.map(|(_, config)| config)
+            other.map(|learner| learner.babbling)
         ),
     }
 }
@@ -41,10 +48,10 @@ fn refused(bytes: &[u8]) -> String {
 /// and it decides and learns on alike. Catches a number that goes through decimal text.
 #[test]
 fn round_trip_keeps_every_bit() {
-    let (mut learner, config, bytes) = agent();
-    let (mut loaded, read) = load(&bytes).unwrap();
-    assert_eq!(read, config);
-    assert_eq!(loaded.save(read.clone()).unwrap(), bytes);
+    let (mut learner, task, bytes) = agent();
+    let mut loaded = load(&bytes).unwrap();
+    assert_eq!(*loaded.config(), task.config);
+    assert_eq!(loaded.save().unwrap(), bytes);
     let counts = |learner: &Learner<ReachNetwork>| {
         let babbling = &learner.babbling;
         (
@@ -68,10 +75,7 @@ fn round_trip_keeps_every_bit() {
     }];
     ours.learn(&more).unwrap();
     theirs.learn(&more).unwrap();
-    assert_eq!(
-        loaded.save(read.clone()).unwrap(),
-        learner.save(read).unwrap()
-    );
+    assert_eq!(loaded.save().unwrap(), learner.save().unwrap());
 }
 
 /// A weight beyond the rule's bound, or averages that do not fit, are named. Catches weights that are
@@ -137,4 +141,80 @@ fn foreign_files_are_refused() {
     foreign.extend_from_slice(header);
     foreign.extend_from_slice(&[0; 4]);
     assert!(refused(&foreign).contains("gym_babble"));
+}
+
+/// The same file with another text in the place of one in its JSON, and the checksum that fits.
+fn with(bytes: &[u8], text: &str, other: &str) -> Vec<u8> {
+    let (_, header) = SafeTensors::read_metadata(bytes).unwrap();
+    let json = &header.metadata().as_ref().unwrap()["gym_babble.reach"];
+    let (_, fields) = json.split_once("\",").unwrap();
+    assert_eq!(fields.matches(text).count(), 1, "{text} in {fields}");
+    let fields = fields.replace(text, other);
+    let tensors = SafeTensors::deserialize(bytes).unwrap();
+    let mut hash = Xxh3::new();
+    hash.update(format!("{{{fields}").as_bytes());
+    let names = ["weights", "a_mean", "g_mean"];
+    let views = names.map(|name| (name, tensors.tensor(name).unwrap()));
+    for (_, view) in &views {
+        hash.update(view.data());
+    }
+    let json = format!("{{\"checksum\":\"{:016x}\",{fields}", hash.digest());
+    let metadata = HashMap::from([("gym_babble.reach".to_owned(), json)]);
+    serialize(views, Some(metadata)).unwrap()
+}
+
+/// A file whose counts no babbling has is refused, though its checksum is right, and the field is named.
+/// Catches counts that are trusted: they decide with which babble learning goes on.
+#[test]
+fn counts_that_cannot_be_are_named() {
+    let (learner, _, bytes) = agent();
+    let babbled = format!("\"babbled\":{}", learner.babbling.babbled());
+    let learnt = format!("\"learnt\":{}", learner.babbling.learnt());
+    assert_eq!(with(&bytes, &babbled, &babbled), bytes);
+    for (text, field, value) in [
+        (&babbled, "babbled", "-1"),
+        (&babbled, "babbled", "1e999"),
+        (&babbled, "babbled", "2.5"),
+        (&babbled, "babbled", "\"many\""),
+        (&babbled, "babbled", "null"),
+        (&babbled, "babbled", "true"),
+        (&babbled, "babbled", "18446744073709551616"),
+        (&babbled, "babbled", "18446744073709551615"),
+        // So many without more to learn from end a search.
+        (&babbled, "babbled", "2100001"),
+        (&babbled, "babbled", "19"),
+        (&learnt, "learnt", "-1"),
+        (&learnt, "learnt", "1000000"),
+        (&learnt, "learnt", "[20]"),
+    ] {
+        let problem = refused(&with(&bytes, text, &format!("\"{field}\":{value}")));
+        assert!(problem.contains(field), "{field} = {value}: {problem}");
+    }
+    let seed = format!("\"seed\":{}", u64::MAX);
+    assert!(refused(&with(&bytes, &seed, "\"seed\":-1")).contains("seed"));
+    let still = with(&bytes, "\"quasi_static\":true", "\"quasi_static\":1");
+    assert!(refused(&still).contains("babbling.quasi_static"));
+}
+
+/// An agent goes on learning on the config that it was made with alone, before and after it was stored,
+/// and the field is named in which another one differs; it acts anywhere. Catches one that learns on, and
+/// is stored, on the config that it happens to act in.
+#[test]
+fn another_config_is_refused_to_learn_on() {
+    let (mut learner, task, bytes) = agent();
+    let config = Config::from_json(r#"{"profile": "icub", "reach": {"movement_s": 5.0}}"#).unwrap();
+    let other = Arc::new(ReachTask::new(config, ReachOptions::default()).unwrap());
+    let pool = &mut Executor::new(1).unwrap();
+    let mut loaded = load(&bytes).unwrap();
+    for agent in [&mut learner, &mut loaded] {
+        let refused = agent.learn(&other, 1, pool).unwrap_err();
+        let AgentError::OtherConfig { field, here, .. } = refused else {
+            panic!("{refused}");
+        };
+        assert_eq!((&*field, &*here), ("reach.movement_s", "5.0"));
+        assert_eq!(agent.save().unwrap(), bytes);
+        assert!(agent.network.policy(Arc::clone(&other)).is_ok());
+        agent.learn(&task, 1, pool).unwrap();
+    }
+    assert_eq!(loaded.save().unwrap(), learner.save().unwrap());
 }

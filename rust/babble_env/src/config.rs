@@ -3,6 +3,7 @@
 //! A config is a profile (`paper` or `icub`) with any of its fields replaced. Unknown fields are
 //! refused. Sources of the numbers: \[P\] the paper, \[F\] fitted to its tables, \[C\] our choice.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use babble_body::Body;
@@ -123,6 +124,16 @@ impl Config {
         self.reach.validate(&self.body.muscles)
     }
 
+    /// The first field in which another config differs: its path, and its values here and there as
+    /// JSON.
+    ///
+    /// # Errors
+    /// As [`Self::to_json`].
+    pub fn difference(&self, other: &Self) -> Result<Option<[String; 3]>, EnvError> {
+        let value = |config| serde_json::to_value(config).map_err(|error| document(&error));
+        Ok(difference(&value(self)?, &value(other)?, &mut Vec::new()))
+    }
+
     /// The whole document as JSON.
     ///
     /// # Errors
@@ -130,6 +141,23 @@ impl Config {
     pub fn to_json(&self) -> Result<String, EnvError> {
         serde_json::to_string(self).map_err(|error| document::fault("document", &error))
     }
+}
+
+fn difference(here: &Value, there: &Value, path: &mut Vec<String>) -> Option<[String; 3]> {
+    if here == there {
+        return None;
+    }
+    let (Value::Object(ours), Value::Object(theirs)) = (here, there) else {
+        return Some([path.join("."), here.to_string(), there.to_string()]);
+    };
+    let keys: BTreeSet<&String> = ours.keys().chain(theirs.keys()).collect();
+    keys.into_iter().find_map(|key| {
+        path.push(key.clone());
+        let [here, there] = [ours, theirs].map(|fields| fields.get(key).unwrap_or(&Value::Null));
+        let found = difference(here, there, path);
+        path.pop();
+        found
+    })
 }
 
 /// Replaces in `base` what `overrides` has; a key that `base` does not have is an unknown field.

@@ -4,7 +4,7 @@ use babble_agent::AgentError;
 use babble_agent::babbling::ColumnKind;
 use babble_agent::erased::{self, AnyLearner};
 use babble_brain::Association;
-use babble_env::{Config, Executor};
+use babble_env::Executor;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -44,21 +44,18 @@ struct Inner {
 
 #[pymethods]
 impl Learner {
-    /// A network that has learnt nothing, for a task of that name; `brain` (complete) and `babbling`
-    /// are JSON.
+    /// A network that has learnt nothing, for a task; `brain` (complete) and `babbling` are JSON.
     #[new]
-    fn new(task: &str, brain: &str, seed: u64, babbling: &str, threads: usize) -> PyResult<Self> {
+    fn new(task: &Task, brain: &str, seed: u64, babbling: &str, threads: usize) -> PyResult<Self> {
         let (brain, babbling) = (value("brain", brain)?, value("babbling", babbling)?);
-        let learner = erased::learner(task, brain, seed, babbling).map_err(errors::agent)?;
+        let learner = erased::learner(&task.task, brain, seed, babbling).map_err(errors::agent)?;
         Self::of(learner, threads)
     }
 
-    /// The learner in the bytes of a safetensors file, and the JSON of the config it babbled with.
+    /// The learner in the bytes of a safetensors file.
     #[staticmethod]
-    fn load(bytes: &[u8], threads: usize) -> PyResult<(Self, String)> {
-        let (learner, config) = erased::load(bytes).map_err(errors::agent)?;
-        let config = config.to_json().map_err(errors::env)?;
-        Ok((Self::of(learner, threads)?, config))
+    fn load(bytes: &[u8], threads: usize) -> PyResult<Self> {
+        Self::of(erased::load(bytes).map_err(errors::agent)?, threads)
     }
 
     fn __enter__(&self) -> PyResult<()> {
@@ -77,6 +74,16 @@ impl Learner {
     /// Name of its task.
     fn task(&self) -> PyResult<&'static str> {
         Ok(self.inner.read()?.learner.task())
+    }
+
+    /// The config that it babbles with, as JSON.
+    fn config(&self) -> PyResult<String> {
+        self.inner
+            .read()?
+            .learner
+            .config()
+            .to_json()
+            .map_err(errors::env)
     }
 
     /// Numbers of maps and rule, as JSON.
@@ -200,21 +207,16 @@ impl Learner {
         Ok(dict)
     }
 
-    /// Sets weights and running averages of the association at a place.
-    fn set(
-        &self,
-        association: usize,
-        weights: PyReadonlyArray2<'_, f32>,
-        a_mean: PyReadonlyArray1<'_, f32>,
-        g_mean: PyReadonlyArray1<'_, f32>,
-    ) -> PyResult<()> {
+    /// Sets weights and running averages of all associations, in their order.
+    fn set(&self, parts: Vec<Learnt<'_>>) -> PyResult<()> {
         let learner = &mut self.inner.write()?.learner;
-        let [a_mean, g_mean] = [a_mean, g_mean].map(|mean| mean.as_array().to_vec());
-        convert::check_width(weights.as_array().shape(), g_mean.len(), "weights")?;
-        let weights: Vec<f32> = weights.as_array().iter().copied().collect();
-        learner
-            .set(association, &weights, &a_mean, &g_mean)
-            .map_err(errors::agent)
+        let parts = parts.into_iter().map(|(weights, a_mean, g_mean)| {
+            let [a_mean, g_mean] = [a_mean, g_mean].map(|mean| mean.as_array().to_vec());
+            convert::check_width(weights.as_array().shape(), g_mean.len(), "weights")?;
+            Ok([weights.as_array().iter().copied().collect(), a_mean, g_mean])
+        });
+        let parts = parts.collect::<PyResult<Vec<_>>>()?;
+        learner.set(&parts).map_err(errors::agent)
     }
 
     /// What the names of each association's weights begin with, in their order.
@@ -232,10 +234,9 @@ impl Learner {
         Ok(self.inner.read()?.learner.input_shapes())
     }
 
-    /// The learner as the bytes of a safetensors file; `config` is the JSON of body and task.
-    fn save<'py>(&self, py: Python<'py>, config: &str) -> PyResult<Bound<'py, PyBytes>> {
-        let config = Config::from_json(config).map_err(errors::env)?;
-        let bytes = self.inner.read()?.learner.save(config);
+    /// The learner as the bytes of a safetensors file.
+    fn save<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = self.inner.read()?.learner.save();
         Ok(PyBytes::new(py, &bytes.map_err(errors::agent)?))
     }
 }
@@ -261,8 +262,9 @@ pub(crate) fn babble_steps(task: &Task) -> PyResult<usize> {
     erased::babble_steps(&task.task).map_err(errors::agent)
 }
 
-/// The first `n` babbles of a seed: percepts, actions and parts of the case by name, which babbles can
-/// be learnt from, and the codes of their outcomes.
+/// The first `n` babbles of a seed, with an experience at the end of each or every `period_s` seconds:
+/// percepts, actions and parts of the case by name, which babble each experience is of, whether it can
+/// be learnt from, and the code of the babble's outcome.
 #[pyfunction]
 pub(crate) fn babble<'py>(
     py: Python<'py>,
@@ -270,15 +272,17 @@ pub(crate) fn babble<'py>(
     n: usize,
     seed: u64,
     babbling: &str,
+    period_s: Option<f64>,
     threads: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
     let options = value("babbling", babbling)?;
     let found = py
         .detach(|| {
             let executor = &mut signals::executor(threads)?;
-            erased::babble_any(&task.task, n, seed, options, executor)
+            erased::babble_any(&task.task, n, seed, options, period_s, executor)
         })
         .map_err(errors::agent)?;
+    let rows = found.learnable.len();
     let kinds = ["percepts", "actions", "case"].map(|name| (name, PyDict::new(py)));
     for column in found.columns {
         let kind = match column.kind {
@@ -286,13 +290,14 @@ pub(crate) fn babble<'py>(
             ColumnKind::Action => 1,
             ColumnKind::Case => 2,
         };
-        let values = PyArray1::from_vec(py, column.values).reshape([n, column.width])?;
+        let values = PyArray1::from_vec(py, column.values).reshape([rows, column.width])?;
         kinds[kind].1.set_item(column.name, values)?;
     }
     let dict = PyDict::new(py);
     for (name, columns) in kinds {
         dict.set_item(name, columns)?;
     }
+    dict.set_item("babble", PyArray1::from_vec(py, found.babbles))?;
     dict.set_item("learnable", PyArray1::from_vec(py, found.learnable))?;
     let outcomes = found.outcomes.iter().map(|&outcome| outcome as usize);
     dict.set_item("outcome", PyArray1::from_vec(py, outcomes.collect()))?;

@@ -5,18 +5,20 @@ use babble_env::{EnvError, GraspTask, Outcome, Stream};
 
 use crate::babbling::{Babble, Column, ColumnKind};
 
-/// Time that the reflex closes the hand before the arm moves, and time that it moves \[s\]; 2 and 2
-/// \[C\], in which the arm makes 86 % of its way.
+/// Time that the reflex closes the hand before the arm moves \[s\]; 2 \[C\].
 const CLOSING_S: f64 = 2.0;
+/// Random postures that the arm is given, one after the other; 3 \[C\].
+const POSTURES: usize = 3;
+/// Time that the arm moves to each of them \[s\]; 2 \[C\], in which it makes 86 % of its way.
 const MOVING_S: f64 = 2.0;
 /// Time that one babble takes \[s\].
-const BABBLE_S: f64 = CLOSING_S + MOVING_S;
+const BABBLE_S: f64 = CLOSING_S + POSTURES as f64 * MOVING_S;
 
 /// Equilibrium points of thumb and virtual finger as the paper counts them: opening angles,
 /// EP = 90° − flexion \[deg\].
 pub type HandPosture = [f32; 2];
 
-/// What a babble with the object in the hand leaves behind.
+/// What a moment of a babble with the object in the hand leaves behind.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Experience {
     /// Pan and tilt on the object, over their ranges: where it is. NaN where all of it is hidden.
@@ -29,7 +31,7 @@ pub struct Experience {
     pub hand: HandPosture,
     /// Diameter of the object \[m\].
     pub diameter: f64,
-    /// Success if the hand kept the object, lost if not.
+    /// Success if the hand kept the object to the end of the babble, lost if not.
     pub outcome: Outcome,
 }
 
@@ -47,42 +49,44 @@ impl Babble for GraspTask {
 
     const TRIES: usize = 1;
     const RAREST: u64 = 500;
+    const PERIODS_S: Option<[f64; 2]> = Some([0.01, MOVING_S]);
 
-    /// From a random posture to another. It can be learnt from if the hand kept the object, in sight
-    /// of the eye.
+    /// From a random posture to others. It can be learnt from if the hand kept the object to the end,
+    /// whenever the eye sees it. The period begins anew with each posture.
     fn babble(
         &self,
         (): (),
+        period_s: Option<f64>,
         stream: &mut Stream,
         all: bool,
-    ) -> Result<Option<Experience>, EnvError> {
+    ) -> Result<Vec<Experience>, EnvError> {
         let diameter = self.draw_diameter(stream);
         let mut object = InHand::draw(self, diameter, stream)?;
-        let to = self.draw_free_posture(diameter / 2.0, stream)?;
         object.carry(self, object.start(), CLOSING_S);
-        object.carry(self, to, MOVING_S);
-        let outcome = if object.is_held(self) {
-            Outcome::Success
-        } else if all {
-            Outcome::Lost
-        } else {
-            return Ok(None);
-        };
-        let mut fovea = Box::new([0.0; FOVEA_NEURONS]);
-        let gaze = object.see(self, &mut fovea);
-        let posture = object.posture(self);
-        let share = self.robot.normalised(posture);
-        let experience = Experience {
-            eye: gaze.map_or([f32::NAN; 2], |gaze| {
-                self.eye.normalised(gaze).map(|x| x as f32)
-            }),
-            fovea,
-            arm: [share[0], share[1]].map(|x| x.clamp(0.0, 1.0) as f32),
-            hand: [posture[2], posture[3]].map(|flexion| (90.0 - flexion.to_degrees()) as f32),
-            diameter,
-            outcome,
-        };
-        Ok((all || experience.is_kept()).then_some(experience))
+        let step_s = self.config.grasp.physics_step_s();
+        let steps = |seconds: f64| (seconds / step_s).round().max(1.0);
+        let moving = steps(MOVING_S);
+        let period = period_s.map_or(f64::INFINITY, steps);
+        let mut experiences = Vec::new();
+        for _ in 0..POSTURES {
+            let to = self.draw_free_posture(diameter / 2.0, stream)?;
+            let mut left = moving;
+            while left >= period {
+                object.carry(self, to, period * step_s);
+                experiences.push(experience(self, &object, diameter));
+                left -= period;
+            }
+            object.carry(self, to, left * step_s);
+        }
+        if period_s.is_none() {
+            experiences.push(experience(self, &object, diameter));
+        }
+        if object.is_held(self) {
+            let kept = |one: &mut Experience| one.outcome = Outcome::Success;
+            experiences.iter_mut().for_each(kept);
+        }
+        experiences.retain(|one| all || one.is_kept());
+        Ok(experiences)
     }
 
     fn babble_steps(&self) -> usize {
@@ -105,5 +109,23 @@ impl Babble for GraspTask {
             Column::of("hand", ColumnKind::Action, all, |e| e.hand),
             Column::of("diameter", ColumnKind::Case, all, |e| [e.diameter as f32]),
         ]
+    }
+}
+
+/// What is seen and felt now. Whether the object is kept shows at the end of the babble.
+fn experience(task: &GraspTask, object: &InHand, diameter: f64) -> Experience {
+    let mut fovea = Box::new([0.0; FOVEA_NEURONS]);
+    let gaze = object.see(task, &mut fovea);
+    let posture = object.posture(task);
+    let share = task.robot.normalised(posture);
+    Experience {
+        eye: gaze.map_or([f32::NAN; 2], |gaze| {
+            task.eye.normalised(gaze).map(|x| x as f32)
+        }),
+        fovea,
+        arm: [share[0], share[1]].map(|x| x.clamp(0.0, 1.0) as f32),
+        hand: [posture[2], posture[3]].map(|flexion| (90.0 - flexion.to_degrees()) as f32),
+        diameter,
+        outcome: Outcome::Lost,
     }
 }

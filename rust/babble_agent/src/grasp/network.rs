@@ -29,6 +29,10 @@ pub struct GraspBrain {
     /// 20 \[C\]. The recalled posture is that of a hand around the object: as equilibrium point it
     /// would press with no force.
     pub squeeze_deg: f64,
+    /// Time between two applications of the rule while the arm moves in babbling \[s\]; 0.2 \[C\]. None
+    /// for one, at the end of a babble. The shorter, the more the running averages follow the movement,
+    /// and the narrower the surround of the weights.
+    pub learning_period_s: Option<f64>,
 }
 
 impl Default for GraspBrain {
@@ -38,6 +42,7 @@ impl Default for GraspBrain {
             sigma: 0.7,
             rule: Rule::default(),
             squeeze_deg: 20.0,
+            learning_period_s: Some(0.2),
         }
     }
 }
@@ -100,6 +105,10 @@ impl Network for GraspNetwork {
 
     fn rule(&self) -> &Rule {
         &self.config.rule
+    }
+
+    fn learning_period_s(&self) -> Option<f64> {
+        self.config.learning_period_s
     }
 
     fn associations(&self) -> Vec<&Association> {

@@ -51,14 +51,18 @@ impl Babble for ReachTask {
 
     const TRIES: usize = 5;
     const RAREST: u64 = 10_000;
+    const PERIODS_S: Option<[f64; 2]> = None;
 
-    /// A random case, b1 uniform in its range and b2 = 1 − b1.
+    /// A random case, b1 uniform in its range and b2 = 1 − b1. What is seen and the parameters are the
+    /// same all along a movement, so there is one experience, whatever the period (Sect. III-A: "for
+    /// each trajectory").
     fn babble(
         &self,
         options: ReachBabbling,
+        _period_s: Option<f64>,
         stream: &mut Stream,
         all: bool,
-    ) -> Result<Option<Experience>, EnvError> {
+    ) -> Result<Vec<Experience>, EnvError> {
         let case = ReachCase::draw_geometry(self, stream)?;
         let [low, high] = self.config.reach.b_range;
         let b1 = stream.uniform(low, high);
@@ -66,7 +70,7 @@ impl Babble for ReachTask {
         let path = MovementPath::new(self, &case, b)?;
         let whole = path.postures().len() == self.config.reach.movement_steps();
         if !whole && !all {
-            return Ok(None);
+            return Ok(Vec::new());
         }
         let played = path.play(self, &case, options.fidelity(), |_| {});
         let mut experience = Experience {
@@ -76,14 +80,14 @@ impl Babble for ReachTask {
             outcome: played.outcome,
         };
         if !experience.is_legal() && !all {
-            return Ok(None);
+            return Ok(Vec::new());
         }
         let gaze = self.foveate(&case)?;
         let camera = self.eye.camera(gaze);
         let single = |x: [f64; 2]| x.map(|x| x as f32);
         experience.eye = single(self.eye.normalised(gaze));
         experience.obstacle = single(Self::obstacle_angles(&camera, case.obstacle.as_ref()));
-        Ok(Some(experience))
+        Ok(vec![experience])
     }
 
     fn babble_steps(&self) -> usize {

@@ -78,6 +78,15 @@ class Interface:
         return str(self.options["obs"])
 
     @property
+    def unconverged_steps(self) -> int | None:
+        """Physics steps so far in which the solver of contacts did not converge.
+
+        Of all environments that share this interface, together. None where no solver tells: in
+        reaching, which needs none, and with the engine rapier.
+        """
+        return self.task.unconverged_steps()
+
+    @property
     def retina_size(self) -> int:
         """Edge of the eye's image [pixel]."""
         return int(self.options.get("retina_size", 0))

@@ -130,7 +130,9 @@ impl Config {
     /// # Errors
     /// As [`Self::to_json`].
     pub fn difference(&self, other: &Self) -> Result<Option<[String; 3]>, EnvError> {
-        let value = |config| serde_json::to_value(config).map_err(|error| document(&error));
+        let value = |config| {
+            serde_json::to_value(config).map_err(|error| document::fault("document", &error))
+        };
         Ok(difference(&value(self)?, &value(other)?, &mut Vec::new()))
     }
 

@@ -14,6 +14,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMPS := $(VENV)/stamps
 FRAMEWORKS := .venv-frameworks
+FRAMEWORK_SETS := learners rllib lerobot
 PEERS := .venv-bench
 
 # One interpreter for every build of pyo3, so that none undoes another.
@@ -38,7 +39,7 @@ demo: setup ## Compare the agents on both tasks and write figures and tables int
 	$(BIN)/gym-babble compare --task grasp --report report/grasp --other-report ../index.html
 
 PICTURES := docs/images
-pictures: setup ## Draw the pictures of README and docs again, without those of `make bench` (eight minutes)
+pictures: setup ## Draw the pictures of README and docs again, without those of `make bench` (some minutes)
 	$(BIN)/python examples/film.py --out $(PICTURES)/babble.gif
 	$(BIN)/python examples/learning_curves.py --out $(PICTURES)/learning.png
 	for figure in fig2 fig4 fig5 fig7 fig8 sight; do \
@@ -104,8 +105,9 @@ microbench: setup ## Measure parts: criterion in Rust, pytest-benchmark in Pytho
 	cargo bench
 	$(BIN)/python -m pytest -o python_files='bench_*.py' --benchmark-only
 
-frameworks: $(FRAMEWORKS)/installed ## Run the examples of frameworks that need an environment of their own (RLlib)
-	$(FRAMEWORKS)/bin/python examples/rllib_ppo.py
+frameworks: $(foreach set,$(FRAMEWORK_SETS),$(FRAMEWORKS)/$(set)/installed) ## Run the snippets of docs/frameworks.md in environments of their own (8 GB)
+	$(foreach set,$(FRAMEWORK_SETS),$(FRAMEWORKS)/$(set)/bin/python .ci/frameworks.py $(set) &&) true
+	$(FRAMEWORKS)/rllib/bin/python examples/rllib_ppo.py
 
 constraints: $(STAMPS)/dependencies ## Pin the newest releases that pyproject.toml allows, for every Python and platform
 	$(BIN)/uv pip compile pyproject.toml --all-extras --universal --python-version 3.10 --upgrade \
@@ -142,11 +144,12 @@ $(STAMPS)/extension: $(STAMPS)/dependencies $(EXTENSION_SOURCES)
 	env -u CONDA_PREFIX VIRTUAL_ENV='$(CURDIR)/$(VENV)' $(BIN)/maturin develop --release --features toy
 	@touch $@
 
-# The package as users install it, a wheel, beside the Gymnasium that RLlib pins.
-$(FRAMEWORKS)/installed: $(STAMPS)/extension $(shell find gym_babble -name '*.py')
-	@test -x $(FRAMEWORKS)/bin/pip || "$(PYTHON)" -m venv $(FRAMEWORKS)
-	rm -rf $(FRAMEWORKS)/wheel
-	$(BIN)/maturin build --release --out $(FRAMEWORKS)/wheel
-	$(FRAMEWORKS)/bin/python -m pip install --disable-pip-version-check --quiet 'ray[rllib]>=2.60,<3' torch $(FRAMEWORKS)/wheel/*.whl
-	$(FRAMEWORKS)/bin/python -m pip install --disable-pip-version-check --quiet --force-reinstall --no-deps $(FRAMEWORKS)/wheel/*.whl
+# The package as users install it, a wheel, beside what each set of frameworks pins.
+$(FRAMEWORKS)/wheel: $(STAMPS)/extension $(shell find gym_babble -name '*.py')
+	rm -rf $@
+	$(BIN)/maturin build --release --out $@
+
+$(FRAMEWORKS)/%/installed: .ci/frameworks-%.txt $(FRAMEWORKS)/wheel
+	$(BIN)/uv venv --quiet --allow-existing --python 3.12 $(@D)
+	$(BIN)/uv pip install --quiet --python $(@D)/bin/python --reinstall-package gym-babble -r $< $(FRAMEWORKS)/wheel/*.whl
 	@touch $@

@@ -102,7 +102,7 @@ def held() -> tuple[list[bytes], NDArray[np.float32]]:
     moves = np.concatenate([arms.repeat(TARGET_STEPS, axis=0), hands], axis=2).astype(np.float32)
     for action in moves:
         _, _, _, _, info = envs.step(action)
-    kept = np.flatnonzero(began & (info["outcome"] != "lost"))
+    kept = np.flatnonzero(began & ~info["outcome"]["lost"])
     if len(kept) < POOL // 2:
         raise RuntimeError(f"only {len(kept)} of {POOL} hands held their object")
     return [states[i] for i in kept], moves[:, kept]

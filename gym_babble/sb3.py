@@ -133,15 +133,13 @@ class BabbleVecEnv(VecEnv):
         return [self._of_one(i, attr_name) for i in self._get_indices(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: VecEnvIndices = None) -> None:
-        """Sets an attribute, which all environments share.
+        """Sets an attribute of your own in each environment.
 
         Raises:
-            AttributeError: Each environment has its own value, which a reset sets.
-            ConfigError: `indices` omits some environments.
+            AttributeError: The environments themselves have an attribute of this name.
         """
-        if sorted(self._get_indices(indices)) != list(range(self.num_envs)):
-            raise ConfigError(f"{attr_name}: all environments share this attribute; omit indices")
-        self.envs.set_attr(attr_name, [value] * self.num_envs)
+        for i in self._get_indices(indices):
+            self.envs.set_of_one(i, attr_name, value)
 
     def env_method(
         self,

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from results.stores import Stores
 
 OUTCOMES = ("success", "collision", "joint_limit")
+AGENTS = ("scripted", "oracle")
 PANELS = ("halfway", "switched")
 SIZES = {"small": "2.4 cm", "big": "6 cm"}
 
@@ -114,22 +115,12 @@ def table2_short(stores: Stores) -> str:
 
 def table2(stores: Stores) -> str:
     """Reaching and grasping in the tests of Table II and in the regions."""
-    paper = [
+    rows = [
         ["paper", size, "144", share(known["reach"]), "", share(known["held"])]
         for size, known in PAPER_TABLE_II.items()
     ]
-    return _table2(paper, stores["table2"]["paper"])
-
-
-def table2_rapier(stores: Stores) -> str:
-    """The same by the other engine."""
-    return _table2([], stores["table2_rapier"]["rapier"])
-
-
-def _table2(rows: list[list[str]], found: dict[str, Any]) -> str:
-    rows = list(rows)
     for protocol, title in TESTS.items():
-        for size in found["sizes"]:
+        for size in stores["table2"]["paper"]["sizes"]:
             tests = size["tests"][protocol]
             number = sum(seed["cases"] for seed in tests["by_seed"])
             rates = [tests["over_seeds"][fact] for fact in ("reach", "palm_reach", "held")]
@@ -191,22 +182,21 @@ def sizes(stores: Stores) -> str:
 def engines(stores: Stores) -> str:
     """Balls held, of 100, by both engines and by independent fingers."""
     runs = {
-        name: [rate for rate in found if rate["diameter"] <= 0.08]
-        for name, found in stores["sizes"].items()
+        title: {rate["diameter"]: rate for rate in stores["sizes"][run]}
+        for run, title in (
+            ("tree", "`tree`"),
+            ("independent", "`tree`, independent fingers"),
+            ("rapier", "`rapier`"),
+        )
     }
-    held = {name: [str(rate["held"]) for rate in found] for name, found in runs.items()}
-    deepest = {
-        name: [f"{rate['penetration_mm']:.2f}" for rate in found] for name, found in runs.items()
-    }
-    rows = [
-        ["`tree` holds", *held["tree"]],
-        ["deepest [mm]", *deepest["tree"]],
-        ["`tree`, independent fingers", *held["independent"]],
-        ["`rapier` holds", *held["rapier"]],
-        ["deepest [mm]", *deepest["rapier"]],
-    ]
-    diameters = [f"{100 * rate['diameter']:g}" for rate in runs["tree"]]
-    table = markdown(["diameter [cm]", *diameters], rows)
+    diameters = [diameter for diameter in runs["`tree`"] if diameter <= 0.08]
+    rows = []
+    for title, rates in runs.items():
+        found = [rates.get(diameter) for diameter in diameters]
+        rows.append([title, *(str(rate["held"]) if rate else "–" for rate in found)])
+        deepest = [f"{rate['penetration_mm']:.2f}" if rate else "–" for rate in found]
+        rows.append(["deepest [mm]", *deepest])
+    table = markdown(["diameter [cm]", *(f"{100 * d:g}" for d in diameters)], rows)
     return "".join(f"  {line}\n" for line in table.splitlines())
 
 
@@ -289,7 +279,18 @@ def _grasping_row(title: str, cells: list[str], found: dict[str, Any], key: str)
     return [title, *cells, *split, *rest]
 
 
+def solved(stores: Stores) -> str:
+    """What the scripted agent and the oracle solve of the default cases."""
+    rows = [
+        [f"`{row['id']}`", row["control"], *(share(row[who] / row["cases"]) for who in AGENTS)]
+        for found in stores["solved"].values()
+        for row in found
+    ]
+    return markdown(["id", "control", *(f"`{who.title()}`" for who in AGENTS)], rows)
+
+
 BLOCKS: dict[str, Callable[[Stores], str]] = {
-    block.__name__: block for block in (table1_short, table1, fig4, ppo_reach)
+    block.__name__: block
+    for block in (table1_short, table1, fig4, ppo_reach, sizes, engines, solved)
 }
 """The tables by name."""

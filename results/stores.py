@@ -16,9 +16,10 @@ FOLDER = ROOT / "results"
 
 TABLE1 = "gym-babble reproduce table1 --seeds 5"
 REACHING = "--env-id BabbleReachPattern-v0"
-RAPIER = "python examples/grasp_sizes.py --engine rapier"
+HOLD = "python examples/grasp_sizes.py"
 STEPS = "--env-id BabbleReach-v0"
 GRASPING = "--env-id BabbleGrasp-v0"
+SOLVED = ("BabbleReachGoal-v0", "BabbleGrasp-v0")
 
 STORES: dict[str, dict[str, str]] = {
     "table1": {
@@ -45,8 +46,18 @@ STORES: dict[str, dict[str, str]] = {
         "curves": "python examples/curves.py",
         "rules": "python examples/own_rule.py --movements 2000",
     },
+    "solved": {id_: f"python examples/solvable.py --ids {id_}" for id_ in SOLVED},
     "fig4": {"paper": "gym-babble reproduce fig4"},
     "fig5": {"paper": "gym-babble reproduce fig5"},
+    "sizes": {
+        "tree": HOLD,
+        "independent": f"{HOLD} --fingers independent --diameters 2.4 6 8",
+        "rapier": f"{HOLD} --engine rapier --diameters 2.4 6 8",
+        "open": f"{HOLD} --reflex 70 70 --diameters 2.4",
+        "open-rapier": f"{HOLD} --reflex 70 70 --engine rapier --diameters 2.4",
+        "closed": f"{HOLD} --reflex 90 90 --diameters 2.4",
+        "closed-rapier": f"{HOLD} --reflex 90 90 --engine rapier --diameters 2.4",
+    },
 }
 """For each store its runs, each with its command; `--json` is added."""
 

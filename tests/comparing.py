@@ -15,11 +15,18 @@ from gym_babble.envs import (
 )
 
 IDS = ("BabbleReach-v0", "BabbleReachSparse-v0", "BabbleReachGoal-v0", "BabbleReachPattern-v0")
-GRASP_IDS = ("BabbleGrasp-v0", "BabbleGraspSparse-v0", "BabbleGraspGoal-v0")
+GRASP_IDS = (
+    "BabbleGrasp-v0",
+    "BabbleGraspSparse-v0",
+    "BabbleGraspGoal-v0",
+    "BabbleGraspFull-v0",
+)
 ALL_IDS = (*IDS, *GRASP_IDS)
 CONTROLS = ("delta_posture", "posture", "torque", "pattern")
 OBSERVATIONS = ("senses", "flat", "goal", "retina")
 REGIONS = ("palm_side", "full")
+WHERE = dict(zip(REGIONS, (GRASP_IDS[0], GRASP_IDS[3]), strict=True))
+"""The id of each region."""
 
 TASKS = {"reach": BabbleReachEnv, "grasp": BabbleGraspEnv}
 ENVIRONMENTS = [row for row in registry.ENVIRONMENTS if row.task in TASKS]
@@ -47,7 +54,7 @@ GRASP_CHOICES = [
 ]
 ALL_CHOICES = [
     *((IDS[0], choices) for choices in CHOICES),
-    *((GRASP_IDS[0], choices) for choices in GRASP_CHOICES),
+    *((WHERE[choices["region"]], choices) for choices in GRASP_CHOICES),
 ]
 """Every combination of named choices, with an id that takes it."""
 

@@ -100,7 +100,9 @@ class Soak:
             self._check(observation, reward)
             ended = terminated | truncated
             if ended.any():
-                self._tally.outcomes.update(infos["outcome"][ended].tolist())
+                for name in self._envs.unwrapped.interface.spec.outcomes:
+                    count = np.count_nonzero(infos["outcome"][name][ended])
+                    self._tally.outcomes[name] += int(count)
             self._tally.steps += self._envs.num_envs
 
     def _draw(self) -> None:

@@ -99,12 +99,10 @@ def test_list(run, run_json):
     ids = [row["id"] for row in run_json("list")]
     assert ids[: len(ENVIRONMENTS)] == [row.id for row in ENVIRONMENTS]
     _, printed, _ = run("list")
-    # A limit that the core sets and a threshold that nobody knows are columns too.
     for row, line in zip(ENVIRONMENTS, printed.splitlines()[2:], strict=False):
-        steps = {"pattern": "1"}.get(row.options["control"], "240")
         solved_at = [] if row.reward_threshold is None else [f"{row.reward_threshold:g}"]
         chosen = [row.options[name] for name in ("obs", "control", "reward")]
-        assert line.split() == [row.id, *chosen, steps, *solved_at]
+        assert line.split() == [row.id, *chosen, str(row.max_episode_steps), *solved_at]
 
 
 @pytest.mark.parametrize("row", ENVIRONMENTS, ids=lambda row: row.id)

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from comparing import CONTROLS_OF, GRASP_IDS, REGIONS, assert_same, drawn_actions, rollout
 from grasping import OPEN, at, grasp, posture, to_object
-from gymnasium.wrappers import TimeLimit
 
 from gym_babble import _core
 from gym_babble.config import Config
 from gym_babble.envs import BabbleGraspEnv, BabbleGraspVectorEnv, BabbleReachEnv
+from gym_babble.envs.interface import outcome_of
 from gym_babble.errors import ScenarioError
 
 CONTROLS = CONTROLS_OF["grasp"]
@@ -43,7 +43,7 @@ def test_a_hand_that_closes_around_the_object_succeeds(config, diameter):
     env = BabbleGraspEnv(control="posture", config=config)
     seen = grasp(env, seed=0, options={**CASE, "start": (-0.15, 1.2), "diameter": diameter})
     _, reward, terminated, truncated, info = seen[-1]
-    assert (terminated, truncated, info["outcome"]) == (True, False, "success")
+    assert (terminated, truncated, outcome_of(info)) == (True, False, "success")
     assert all(info[fact] for fact in env.interface.spec.facts)
     assert info["reward_terms"]["success"] == 1
     assert reward > 0.9
@@ -183,7 +183,7 @@ def enclosed(env):
     while share < 0.999:
         info = env.step(to_object(env, info))[4]
         share += info["reward_terms"]["enclosure"]
-    assert info["outcome"] == "running"
+    assert outcome_of(info) == "running"
 
 
 def test_letting_go_when_the_support_is_gone_loses_the_object():
@@ -194,7 +194,7 @@ def test_letting_go_when_the_support_is_gone_loses_the_object():
     while not ended:
         _, reward, ended, truncated, info = env.step(posture(env, arm, OPEN))
         assert not truncated
-    assert info["outcome"] == "lost"
+    assert outcome_of(info) == "lost"
     assert info["reward_terms"]["failure"] == -1
     assert reward < 0
     assert info["palm_reach"]
@@ -206,7 +206,7 @@ def test_an_object_that_is_struck_out_of_reach_is_lost():
     env = BabbleGraspEnv(control="torque", config=SLIPPERY, region="full")
     case = {"start": (0.2, 0.3), "object": (0.15, 0.27), "diameter": 0.06}
     _, _, terminated, truncated, info = play(env, [1, 0, 0, 0], case)
-    assert (terminated, truncated, info["outcome"]) == (True, False, "lost")
+    assert (terminated, truncated, outcome_of(info)) == (True, False, "lost")
     assert info["reach"]
     assert info["reward_terms"]["failure"] == -1
 
@@ -219,59 +219,10 @@ def test_touching_an_obstacle_terminates(control):
     env = BabbleGraspEnv(control=control)
     action = to_object(env, env.reset(options=BLOCKED)[1]) if control == "posture" else [1, 0, 0, 0]
     _, reward, terminated, truncated, info = play(env, action, BLOCKED)
-    assert (terminated, truncated, info["outcome"]) == (True, False, "collision")
+    assert (terminated, truncated, outcome_of(info)) == (True, False, "collision")
     assert info["reward_terms"]["failure"] == -1
     assert reward < 0
     assert not info["reach"]
-
-
-@pytest.mark.parametrize("region", REGIONS)
-def test_the_time_limit_is_the_regions_however_it_is_made(region):
-    # The registry's limit would cut region "full" short, so the core has its own.
-    limit = {"palm_side": 240, "full": 500}[region]
-    made = gymnasium.make(GRASP_IDS[0], region=region)
-    envs = gymnasium.make_vec(GRASP_IDS[0], num_envs=2, region=region)
-    envs.reset(seed=1, options=CASE)
-    for env in (made, BabbleGraspEnv(region=region)):
-        env.reset(seed=1, options=CASE)
-        for k in range(1, limit + 1):
-            observation, _, terminated, truncated, info = env.step(SPREAD)
-            assert not terminated
-            assert truncated == (k == limit)
-            assert info["outcome"] == ("timeout" if truncated else "running")
-            assert observation["time"] == np.float32(k / limit)
-    for k in range(1, limit + 1):
-        observation, _, _, truncated, infos = envs.step(np.stack([SPREAD] * 2))
-        assert truncated.tolist() == [k == limit] * 2
-    assert list(infos["outcome"]) == ["timeout"] * 2
-    assert (observation["time"] == 1).all()
-
-
-@pytest.mark.parametrize("region", REGIONS)
-def test_max_episode_steps_of_make_is_a_wrappers_and_of_the_environment_its_own(region):
-    limit = {"palm_side": 240, "full": 500}[region]
-    env = gymnasium.make(GRASP_IDS[0], max_episode_steps=10, region=region)
-    assert isinstance(env, TimeLimit)
-    env.reset(seed=1)
-    for _ in range(10):
-        observation, _, terminated, truncated, info = env.step(STAY)
-    assert (terminated, truncated, info["outcome"]) == (False, True, "running")
-    assert observation["time"] == np.float32(10 / limit)
-    for own in (
-        BabbleGraspEnv(max_episode_steps=10, region=region),
-        gymnasium.make_vec(GRASP_IDS[0], num_envs=1, max_episode_steps=10, region=region),
-        BabbleGraspVectorEnv(1, max_episode_steps=10, region=region),
-    ):
-        own.reset(seed=1)
-        for k in range(1, 11):
-            observation, _, _, truncated, info = own.step(np.zeros(own.action_space.shape))
-            assert np.all(truncated) == (k == 10)
-        assert np.all(info["outcome"] == np.array("timeout", object))
-        assert np.all(observation["time"] == 1)
-    # More than the region's own too.
-    assert (
-        BabbleGraspEnv(max_episode_steps=900, region=region).interface.spec.max_episode_steps == 900
-    )
 
 
 def test_the_enclosure_reflex_closes_the_hand_whatever_the_action():
@@ -285,9 +236,9 @@ def test_the_enclosure_reflex_closes_the_hand_whatever_the_action():
             if before[2] or before[3]:
                 break
         lasts[reflex] = before
-    assert lasts[True][4]["outcome"] == "success"
+    assert outcome_of(lasts[True][4]) == "success"
     assert lasts[True][0]["hand"].min() > 0.2
-    assert lasts[False][4]["outcome"] == "timeout"
+    assert outcome_of(lasts[False][4]) == "timeout"
     assert lasts[False][4]["palm_reach"]
     assert lasts[False][0]["hand"].max() < 0.2
     # Not before the palm is touched.
@@ -468,7 +419,7 @@ def test_compute_reward_is_the_reward_of_carrying():
         assert info["is_success"] == (reward == 0)
     assert set(rewards) == {-1.0, 0.0}
     info = seen[-1][4]
-    assert (info["outcome"], info["ever_success"], info["held"]) == ("success", True, True)
+    assert (outcome_of(info), info["ever_success"], info["held"]) == ("success", True, True)
     together = unwrapped.compute_reward(achieved, desired, [{}] * 240)
     assert_same(rewards, together)
     # Relabelled as HER does: with places where the object came later in the episode.
@@ -525,10 +476,10 @@ def test_a_collision_in_the_goal_form_holds_everything_until_the_time_limit(cont
         assert reward == -1
         assert not terminated
         assert truncated == (k == 239)
-        if info["outcome"] == "collision":
+        if outcome_of(info) == "collision":
             senses = np.delete(observation["observation"], clock.start)
             still.append((observation["achieved_goal"], senses))
-    assert info["outcome"] == "collision"
+    assert outcome_of(info) == "collision"
     assert len(still) > 100
     for later in still:
         assert_same(later, still[0])
@@ -548,9 +499,9 @@ def test_a_lost_object_in_the_goal_form_stays_lost():
             posture(env, arm, reflex if closing else OPEN)
         )
         assert (reward, terminated, truncated) == (-1, False, k == 239)
-        if info["outcome"] == "lost":
+        if outcome_of(info) == "lost":
             places.append(observation["achieved_goal"])
-    assert info["outcome"] == "lost"
+    assert outcome_of(info) == "lost"
     assert len(places) > 100
     assert all((place == places[0]).all() for place in places)
 
@@ -566,7 +517,11 @@ def test_failing_with_the_object_at_its_goal_is_no_success_and_earns_nothing():
     assert rewards[0] == 0.0
     first = rewards.index(-1.0)
     assert set(rewards[first:]) == {-1.0}
-    assert (info["outcome"], info["is_success"], info["ever_success"]) == ("collision", False, True)
+    assert (outcome_of(info), info["is_success"], info["ever_success"]) == (
+        "collision",
+        False,
+        True,
+    )
 
 
 # States and configs.
@@ -582,7 +537,7 @@ def test_a_state_continues_to_the_bit_from_any_phase_of_a_grasp():
         seen.append(env.step(actions[-1]))
         states.append(env.get_state())
         hashes.append(env.state_hash())
-    assert seen[-1][4]["outcome"] == "success"
+    assert outcome_of(seen[-1][4]) == "success"
     assert len(set(hashes)) == len(hashes)
     for moment in range(0, len(actions), 9):
         other.set_state(states[moment])
@@ -625,11 +580,11 @@ CHANGES = {
 @pytest.mark.parametrize(("text", "outcome", "sooner"), CHANGES.values(), ids=CHANGES.keys())
 def test_a_configs_numbers_reach_the_simulation(tmp_path, text, outcome, sooner):
     plain = grasp(BabbleGraspEnv(control="posture"), options=CASE)
-    assert plain[-1][4]["outcome"] == "success"
+    assert outcome_of(plain[-1][4]) == "success"
     path = tmp_path / "changed.toml"
     path.write_text(text)
     seen = grasp(BabbleGraspEnv(control="posture", config=path), options=CASE)
-    assert seen[-1][4]["outcome"] == outcome
+    assert outcome_of(seen[-1][4]) == outcome
     assert outcome == "lost" or len(seen) - len(plain) <= sooner
 
 
@@ -667,7 +622,7 @@ def test_single_environments_and_batches_take_the_same_steps_of_a_grasp():
         assert rewards.tolist() == [step[1]] * 3
         assert_same(np.array(observation["touch"][2]), step[0]["touch"])
     assert terminated.all()
-    assert list(infos["outcome"]) == ["success"] * 3
+    assert infos["outcome"]["success"].all()
 
 
 def test_random_play_keeps_what_has_been_true():

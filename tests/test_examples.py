@@ -56,6 +56,10 @@ RUNS = {
         "--seeds 1 --babbles 12 --cases 8",
         r"\| both, xi 0\.8 \| 6 cm \|.+\|",
     ),
+    "cleanrl_ppo.py": (
+        "--steps 2000 --num-envs 16",
+        r"success [01]\.\d\d in the last \d+ episodes",
+    ),
     "grasp_learning_period.py": (
         "--seeds 1 --babbles 6 --every 60",
         r"\| 0\.05 \| \d\.\d+ \| .+ \|",
@@ -96,6 +100,7 @@ def test_last_line(name, repository, monkeypatch, capsys, tmp_path):
         ("sensitivity.py", {"change", "success", "collision", "joint_limit", "legal_rate"}),
         ("grasp_sizes.py", {"diameter", "held", "edges"}),
         ("grasp_sides.py", {"rows", "all"}),
+        ("solvable.py", {"id", "control", "cases", "scripted", "oracle"}),
         ("grasp_interference.py", {"babbled_with", "mean", "spread", "babbled", "in_hand"}),
     ],
 )

@@ -1,4 +1,4 @@
-"""Table I is what README and docs say.
+"""Table I and the hold rates are what README and docs say.
 
 A small run of each variant is compared with the stored one of the same settings and more seeds. A
 band has 3.5 standard errors on either side, from the spread of the stored seeds, which is taken as
@@ -11,6 +11,7 @@ from statistics import fmean, stdev
 
 import pytest
 
+from gym_babble.paper.holding import hold_rates
 from gym_babble.paper.table1 import table1
 from gym_babble.study.rates import OUTCOMES
 from results.stores import Stores
@@ -57,3 +58,13 @@ def test_the_stored_tables_differ_by_learning_alone(stored):
         small, whole = (stored["table1"][run] for run in (f"{variant}-4000", variant))
         success = [run["over_seeds"]["success"]["mean"] for run in (small, whole)]
         assert success[1] - 0.03 < success[0] < success[1] + 0.01
+
+
+def test_hold_rates(stored):
+    """Ten trials of each size: as many held as the stored rate makes likely."""
+    reference = stored["sizes"]["tree"]
+    found = hold_rates(10, diameters=[known["diameter"] for known in reference])
+    for rate, known in zip(found, reference, strict=True):
+        likely = (known["held"] + 1) / (known["trials"] + 2)
+        error = math.sqrt(likely * (1 - likely) * (1 / 10 + 1 / known["trials"]))
+        assert abs(rate["rate"] - known["rate"]) <= SIGMAS * error, rate

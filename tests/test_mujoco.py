@@ -10,6 +10,7 @@ from planar import Ours, turned
 
 from gym_babble import _core, export_mjcf
 from gym_babble.envs import BabbleGraspEnv, BabbleReachEnv
+from gym_babble.envs.interface import outcome_of
 
 mujoco = pytest.importorskip("mujoco", reason="MuJoCo has no wheel for this platform")
 
@@ -188,7 +189,7 @@ def test_a_collision_is_one_in_mujoco():
         while not ended:
             observation, _, terminated, truncated, info = env.step(action)
             ended = terminated or truncated
-        if info["outcome"] != "collision":
+        if outcome_of(info) != "collision":
             continue
         hit += 1
         model = mujoco.MjModel.from_xml_string(export_mjcf("reach", seed=seed))

@@ -6,6 +6,7 @@ import errno
 import json
 import os
 import re
+import runpy
 import subprocess
 import sys
 
@@ -13,6 +14,7 @@ import pytest
 
 from gym_babble import HebbBabbling
 from gym_babble.cli import main
+from gym_babble.errors import ConfigError
 from gym_babble.files import write
 
 FOLDERS = {
@@ -100,6 +102,27 @@ def test_a_file_that_cannot_be_written_is_found_before_learning(
         code, out, err = run(*command, path)
         assert (code, out) == (2, "")
         assert f"--out {path}: " in " ".join(err.split())
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("film.py", "--out"),
+        ("learning_curves.py", "--out"),
+        ("ppo_reach.py", "--save"),
+        ("ppo_study.py", "--out"),
+        ("ppo_study.py", "--pictures"),
+    ],
+    ids=" ".join,
+)
+def test_examples_find_it_before_learning_too(words, repository, tmp_path, monkeypatch):
+    monkeypatch.setattr(HebbBabbling, "learn", refuse)
+    monkeypatch.chdir(tmp_path)
+    name, option = words
+    path = tmp_path / "missing" / "out.gif"
+    monkeypatch.setattr(sys, "argv", [name, option, str(path)])
+    with pytest.raises(ConfigError, match=f"{option} .*missing is missing; create it first"):
+        runpy.run_path(str(repository / "examples" / name), run_name="__main__")
 
 
 @pytest.mark.parametrize("name", names_of(PRINT))

@@ -8,7 +8,7 @@ import pickle
 import gymnasium as gym
 import numpy as np
 import pytest
-from comparing import assert_same
+from comparing import BATCHES, assert_same
 
 from gym_babble import Agent, HebbBabbling, Oracle, Random, Scripted, evaluate, scenarios
 from gym_babble.agents.base import predictor
@@ -135,7 +135,7 @@ AGENTS = {
     "hebb grasps": lambda: HebbBabbling("BabbleGrasp-v0", seed=1).learn(3),
     "random": lambda: Random(gym.make("BabbleReach-v0", config="icub"), seed=4),
     "random grasps": lambda: Random("BabbleGrasp-v0", seed=4),
-    "scripted": lambda: Scripted(gym.make_vec("BabbleGrasp-v0", num_envs=2, region="full")),
+    "scripted": lambda: Scripted(gym.make_vec("BabbleGraspFull-v0", num_envs=2)),
     "oracle": lambda: Oracle("BabbleReachPattern-v0"),
 }
 
@@ -146,8 +146,7 @@ def test_copies_and_pickles_act_alike(name):
     assert isinstance(agent, Agent)
     interface = agent.interface
     kwargs = {} if interface.entry.name == "reach" else {"region": interface.options["region"]}
-    env_id = {"reach": "BabbleReach-v0", "grasp": "BabbleGrasp-v0"}[interface.entry.name]
-    envs = gym.make_vec(env_id, num_envs=3, control=interface.options["control"], **kwargs)
+    envs = BATCHES[interface.entry.name](3, control=interface.options["control"], **kwargs)
     seen, _ = envs.reset(seed=0)
     agent.predict(seen)  # A random agent's copies go on where it is.
     pickled = pickle.loads(pickle.dumps(agent))  # noqa: S301 - our own

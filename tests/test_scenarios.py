@@ -19,6 +19,7 @@ from gym_babble import (
     scenarios,
 )
 from gym_babble.envs import BabbleReachEnv
+from gym_babble.envs.interface import outcome_of
 from gym_babble.errors import BabbleError, ConfigError, ScenarioError
 from gym_babble.study.outcomes import wilson
 
@@ -203,7 +204,7 @@ def test_evaluation_equals_playing_one_by_one_in_every_control():
                 action, state = agent.predict(observation, state)
                 observation, reward, terminated, truncated, info = env.step(action)
                 total, steps, ended = total + reward, steps + 1, terminated or truncated
-            expected = (info["outcome"], steps, total)
+            expected = (outcome_of(info), steps, total)
             assert (result.outcomes[i], result.steps[i], result.returns[i]) == expected
             assert {name: held[i] for name, held in result.facts.items()} == {
                 name: info[name] for name in result.facts

@@ -1,6 +1,7 @@
 """The Python of README and docs runs, and the commands in them exist."""
 
 import re
+import runpy
 import shlex
 import warnings
 
@@ -13,6 +14,11 @@ PAGES = (
     "README.md",
     *(f"docs/{name}.md" for name in ("baselines", "environments", "export", "extending")),
 )
+
+FRAMEWORKS = "docs/frameworks.md"
+"""Runs by section: here what needs nothing more, the others by `make frameworks`."""
+HERE = ("stable-baselines3",)
+IN_TEST_EXAMPLES = ("CleanRL's style",)
 
 
 def blocks(repository, page, *languages):
@@ -29,7 +35,29 @@ def small(code):
 def test_every_page_with_python_is_run(repository):
     pages = [repository / "README.md", *(repository / "docs").glob("*.md")]
     found = [str(path.relative_to(repository)) for path in pages]
-    assert {page for page in found if blocks(repository, page, "python")} == {*PAGES}
+    runs = {*PAGES, FRAMEWORKS}
+    assert {page for page in found if blocks(repository, page, "python")} == runs
+
+
+def test_every_section_of_frameworks_is_run(repository):
+    text = (repository / FRAMEWORKS).read_text(encoding="utf-8")
+    heads = re.findall(r"^## (.+?)(?: [\d.]+)?$", text, re.MULTILINE)
+    runner = runpy.run_path(str(repository / ".ci" / "frameworks.py"))
+    apart = [name for names in runner["ENVIRONMENTS"].values() for name in names]
+    assert [*heads[:-1]] == [*apart, *IN_TEST_EXAMPLES]
+    makefile = (repository / "Makefile").read_text(encoding="utf-8")
+    assert f"FRAMEWORK_SETS := {' '.join(runner['ENVIRONMENTS'])}\n" in makefile
+    assert all(runner["commands"](name) for name in apart)
+
+
+@pytest.mark.parametrize("name", HERE)
+def test_a_framework_that_is_here_runs(repository, name, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    runner = runpy.run_path(str(repository / ".ci" / "frameworks.py"))
+    ((_, _, code),) = runner["commands"](name)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        exec(compile(small(code), name, "exec"), {"__name__": "snippet"})  # noqa: S102 - ours
 
 
 @pytest.mark.parametrize("page", PAGES)

@@ -47,8 +47,8 @@ class Experiences:
     sight of the eye at that moment. They are those that `HebbBabbling` learns from, in its
     order."""
     outcome: NDArray[Any]
-    """How the babble of each row ended (n,), as in `info["outcome"]`; in grasping "success" or
-    "lost"."""
+    """How the babble of each row ended (n,), by the names in `info["outcome"]`; in grasping
+    "success" or "lost"."""
 
     def __len__(self) -> int:
         """Number n of rows."""

@@ -36,7 +36,6 @@ def info(
         "action": asdict(spec.action),
         "reward_terms": spec.reward_terms,
         "outcomes": spec.outcomes,
-        "max_episode_steps": spec.max_episode_steps,
         "control_hz": spec.control_hz,
         "options": [asdict(option) for option in task.options],
         "case_parts": [asdict(part) for part in task.case_parts],

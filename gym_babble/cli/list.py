@@ -2,8 +2,6 @@
 
 from typing import Any
 
-import gymnasium
-
 from gym_babble.cli.arguments import AsJson
 from gym_babble.cli.output import print_json, print_results
 from gym_babble.envs.registry import ENVIRONMENTS, Environment
@@ -14,11 +12,7 @@ __all__ = ["described", "list_environments"]
 
 def list_environments(as_json: AsJson = False) -> None:
     """List the environments."""
-    listed = []
-    for row in ENVIRONMENTS:
-        env: Any = gymnasium.make(row.id)
-        steps = env.unwrapped.interface.spec.max_episode_steps
-        listed.append({**described(row), "max_episode_steps": steps})
+    listed = [described(row) for row in ENVIRONMENTS]
     if as_json:
         print_json(listed)
         return
@@ -34,5 +28,10 @@ def list_environments(as_json: AsJson = False) -> None:
 def described(row: Environment) -> dict[str, Any]:
     """An id, its task, and the options that ids differ in."""
     options = {name: row.options.get(name, "") for name in ("obs", "control", "reward")}
-    threshold = row.reward_threshold
-    return {"id": row.id, "task": row.task, **options, "reward_threshold": threshold}
+    return {
+        "id": row.id,
+        "task": row.task,
+        **options,
+        "max_episode_steps": row.max_episode_steps,
+        "reward_threshold": row.reward_threshold,
+    }

@@ -94,15 +94,14 @@ class BabbleGraspEnv(BabbleEnv):
 
     `is_success` (now), `ever_success` (in this episode), `reach` (any part of arm or hand has
     touched the object), `palm_reach` (the palm has), `held` (the hand has held it without support),
-    `outcome` (running, success, collision, timeout, lost), `reward_terms`.
+    `outcome` (running, success, collision, timeout, lost): a dict of booleans, one of them True;
+    `reward_terms`: a dict of numbers. All are booleans and numbers, so wrappers can make tensors of
+    them.
 
     ## Arguments
 
-    The options are listed below; each is a keyword of `gymnasium.make` too, but for
-    `max_episode_steps`: `gymnasium.make(id, max_episode_steps=n)` keeps it for its TimeLimit
-    wrapper, which truncates after n steps with the outcome still `running`.
-    `gymnasium.make_vec(id, max_episode_steps=n)` and `BabbleGraspEnv(max_episode_steps=n)` set the
-    time limit itself.
+    The options are listed below; each is a keyword of `gymnasium.make` and `make_vec` too, but for
+    `region`: region `full` has an id of its own, `BabbleGraspFull-v0`.
 
     `reset(options=...)` takes `scenario` (see `gym_babble.scenarios`), or any of `start` (shoulder,
     elbow) [rad], `object` (x, y), `diameter`, with `obs="goal"` `goal` (x, y), and `obstacle`

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import inspect
 import json
+import warnings
 from collections.abc import Mapping
 from copy import deepcopy
+from difflib import get_close_matches
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +17,7 @@ from gym_babble import _core
 from gym_babble.checks import numbers, plain, shown
 from gym_babble.config import ConfigLike, config_json
 from gym_babble.envs.labels import SCENARIO_LABELS, check_labels, config_label
-from gym_babble.envs.registry import CasePart, task_entry
+from gym_babble.envs.registry import TASKS, CasePart, task_entry
 from gym_babble.envs.spaces import Spec, observation_space
 from gym_babble.errors import ConfigError, ScenarioError
 
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
 
     from gym_babble.envs.registry import TaskEntry
 
-__all__ = ["RENDER_MODES", "Interface", "document"]
+__all__ = ["RENDER_MODES", "Interface", "document", "outcome_of"]
 
 RENDER_MODES = ("human", "rgb_array", "rgb_array_list")
 
@@ -48,6 +50,7 @@ class Interface:
             given["record"] = True
         self.task = _core.Task(task, config_json(config), json.dumps(given))
         self.render_mode = render_mode
+        self._ignored: set[str] = set()
         self._given = deepcopy(given)
         self.options: dict[str, Any] = deepcopy(self.entry.defaults | given)
         """All options by name."""
@@ -63,6 +66,9 @@ class Interface:
         self.action_space = self.spec.action.box
         self.outcomes = np.array(_core.outcomes(), dtype=object)
         """Names by the core's codes."""
+        codes = {str(name): code for code, name in enumerate(self.outcomes)}
+        self.outcome_codes = tuple((name, codes[name]) for name in self.spec.outcomes)
+        """The task's outcomes with the core's codes."""
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _interface, (self.entry.name, self.task.config(), self.render_mode, self._given)
@@ -109,25 +115,46 @@ class Interface:
     def request(self, options: Any) -> dict[str, Any]:
         """What `reset(options=...)` asks of the cases to come, as the core takes it.
 
+        Options of others, which foreign runners pass, are ignored with a warning, once each.
+
         Raises:
-            ConfigError: An option is unknown.
+            ConfigError: An option is nearly one of those known and not it, or a scenario has an
+                unknown part.
             ScenarioError: A part of the case is not what it should be.
         """
         if not isinstance(options, Mapping):
             raise ConfigError(f"options is a {type(options).__name__}, expected a dict")
         scenario = options.get("scenario")
-        given = {name: value for name, value in options.items() if name != "scenario"}
+        parts = {part.name: part for part in self.entry.case_parts}
+        known = ("scenario", *parts)
+        for name in options:
+            if name not in (*known, *SCENARIO_LABELS):
+                self._ignore(str(name), known)
         if scenario is not None:
             if not isinstance(scenario, Mapping):
                 raise ScenarioError(f"scenario is a {type(scenario).__name__}, expected a Scenario")
             check_labels(scenario, self.entry.name, self.options, self.config_label)
-            given = {**scenario, **given}
-        parts = {part.name: part for part in self.entry.case_parts}
-        unknown = set(given) - {*parts, *SCENARIO_LABELS}
-        if unknown:
-            known = ", ".join(("scenario", *parts))
-            raise ConfigError(f"options: {sorted(map(str, unknown))} unknown; there are {known}")
-        return {name: _value(part, given[name]) for name, part in parts.items() if name in given}
+            for name in scenario:
+                if name not in (*parts, *SCENARIO_LABELS):
+                    raise ConfigError(_unknown("scenario", str(name), tuple(parts)))
+            options = {**scenario, **options}
+        return {
+            name: _value(part, options[name]) for name, part in parts.items() if name in options
+        }
+
+    def _ignore(self, name: str, known: tuple[str, ...]) -> None:
+        """Warns, the first time, of an option that is not ours.
+
+        Raises:
+            ConfigError: It is nearly one of ours, or one that this environment does not have.
+        """
+        of_others = (part.name for task in TASKS.values() for part in task.case_parts)
+        if name in of_others or _near(name, (*known, "reset_mask")):
+            raise ConfigError(_unknown("options", name, known))
+        if name not in self._ignored:
+            self._ignored.add(name)
+            there_are = ", ".join(known)
+            warnings.warn(f"options: {name!r} is ignored; there are {there_are}", stacklevel=4)
 
     def observation(
         self,
@@ -171,6 +198,23 @@ class Interface:
 def _interface(task: str, config: str, render_mode: str | None, given: Any) -> Interface:
     """The interface that was copied or pickled."""
     return Interface(task, config=json.loads(config), render_mode=render_mode, options=given)
+
+
+def _near(name: str, known: tuple[str, ...]) -> list[str]:
+    """The known name that was probably meant, if there is one."""
+    return get_close_matches(name.lower(), known, n=1, cutoff=0.8)
+
+
+def _unknown(where: str, name: str, known: tuple[str, ...]) -> str:
+    """An error's text for an unknown name."""
+    meant = "".join(f" (did you mean {near!r}?)" for near in _near(name, known))
+    return f"{where}: {name!r} unknown{meant}; there are {', '.join(known)}"
+
+
+def outcome_of(info: Mapping[str, Any]) -> str:
+    """Name of the outcome in the info of one environment."""
+    outcome: Mapping[str, bool] = info["outcome"]
+    return next(name for name, is_so in outcome.items() if is_so)
 
 
 def _value(part: CasePart, value: Any) -> float | list[float] | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from copy import copy
 from typing import TYPE_CHECKING, Any
 
 import gymnasium
@@ -34,6 +35,15 @@ class BatchMember:
         self._ended: deque[tuple[bytes, int]] = deque(maxlen=MOST_KEPT)
         """Ended episodes with frames to show: state, and how many frames were shown."""
         self.ready = False
+        self.np_random_seed = -1
+        """Seed of its cases; −1 where it is unknown: before a reset, and after `set_state`."""
+        self.attributes: dict[str, Any] = {}
+        """What `set_attr` of the batch set."""
+
+    def seed(self, seed: int, stream: int) -> None:
+        """Starts the stream of cases anew."""
+        self._batch.seed(self._i, stream)
+        self.np_random_seed = seed
 
     def get_state(self) -> bytes:
         """The whole state, from which `set_state` continues bit for bit."""
@@ -51,16 +61,19 @@ class BatchMember:
         self._ended.clear()
         self._shown = self._batch.moments(self._i)
         self.ready = True
+        self.np_random_seed = -1
 
-    def freeze(self) -> tuple[Any, ...]:
+    def freeze(self) -> tuple[bytes, dict[str, Any]]:
         """All that a copy needs, before the first reset too."""
-        return self.get_state(), self.ready, self._shown, self._ended.copy()
+        others = ("_interface", "_batch", "_i")
+        own = {name: copy(value) for name, value in vars(self).items() if name not in others}
+        return self.get_state(), own
 
-    def thaw(self, frozen: tuple[Any, ...]) -> None:
+    def thaw(self, frozen: tuple[bytes, dict[str, Any]]) -> None:
         """Continues from what `freeze` gave."""
-        state, *others = frozen
+        state, own = frozen
         self.set_state(state)
-        self.ready, self._shown, self._ended = others
+        vars(self).update(own)
 
     def state_hash(self) -> int:
         """A number that two states share only if they are the same to the bit."""

@@ -77,21 +77,20 @@ class BabbleReachEnv(BabbleEnv):
       goal.
     - `joint_limit` (terminated): in `pattern` control, the path asks for a posture outside of the
       joint ranges.
-    - `timeout`: truncated after 240 steps (12 s); in `pattern` control terminated, as every step.
+    - `timeout`: truncated after 240 steps (12 s). In `pattern` control every step is terminated and
+      truncated.
 
     ## Info
 
     `is_success` (now), `ever_success` (in this episode), `outcome` (running, success, collision,
-    joint_limit, timeout), `reward_terms`.
+    joint_limit, timeout): a dict of booleans, one of them True; `reward_terms`: a dict of numbers.
+    All are booleans and numbers, so wrappers can make tensors of them.
 
     ## Arguments
 
-    The options are listed below; each is a keyword of `gymnasium.make` too, but for
-    `max_episode_steps`: `gymnasium.make(id, max_episode_steps=n)` keeps it for its TimeLimit
-    wrapper, which truncates after n < 240 steps with the outcome still `running`.
-    `gymnasium.make_vec(id, max_episode_steps=n)` and `BabbleReachEnv(max_episode_steps=n)` set the
-    time limit itself: outcome `timeout`, and the sense `time` is a share of n. It has no effect in
-    `pattern` control.
+    The options are listed below; each is a keyword of `gymnasium.make` and `make_vec` too.
+    `max_episode_steps` has no effect in `pattern` control. `BabbleReachPattern-v0` takes no other
+    `control`, because its time limit is one step.
 
     `reset(options=...)` takes `scenario` (see `gym_babble.scenarios`), or any of `start` (x, y),
     `target` (x, y) and `obstacle` (x, y), (x, y, radius) or None [m]; unspecified

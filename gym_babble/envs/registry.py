@@ -104,12 +104,14 @@ class Environment:
     task: str
     options: dict[str, Any]
     """All options by name: the task's defaults, and what this environment presets."""
-    max_episode_steps: int | None
-    """Time limit of Gymnasium's wrapper; None where the task's options decide."""
+    max_episode_steps: int
+    """Time limit in control steps."""
     reward_threshold: float | None
     """Mean return at which the task counts as solved."""
     presets: dict[str, Any] = field(default_factory=dict)
-    """Options that differ from the task's defaults; each can be overridden in `make`."""
+    """Options that differ from the task's defaults; `make` can override those not fixed."""
+    fixed: tuple[str, ...] = ()
+    """Options that decide the time limit: another value needs another id."""
 
 
 def _read() -> tuple[dict[str, TaskEntry], tuple[Environment, ...]]:
@@ -140,9 +142,9 @@ def _read() -> tuple[dict[str, TaskEntry], tuple[Environment, ...]]:
 
 
 def _environment(task: TaskEntry, row: dict[str, Any]) -> Environment:
-    presets = dict(row.pop("presets"))
+    presets, fixed = dict(row.pop("presets")), tuple(row.pop("fixed"))
     options = task.defaults | presets
-    return Environment(**row, task=task.name, options=options, presets=presets)
+    return Environment(**row, task=task.name, options=options, presets=presets, fixed=fixed)
 
 
 TASKS, ENVIRONMENTS = _read()

@@ -8,6 +8,7 @@ import gymnasium
 
 from gym_babble import _core
 from gym_babble.envs.interface import RENDER_MODES, Interface, document
+from gym_babble.envs.making import Made, time_limit
 from gym_babble.envs.member import BatchMember
 from gym_babble.envs.registry import task_entry
 from gym_babble.envs.spaces import as_actions
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["BabbleEnv"]
 
 
-class BabbleEnv(gymnasium.Env[Any, Any]):
+class BabbleEnv(Made, gymnasium.Env[Any, Any]):
     """An environment of any task, which `task` names. Tasks with docs have a class of their own."""
 
     metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES)}  # noqa: RUF012 - Gymnasium's
@@ -58,6 +59,9 @@ class BabbleEnv(gymnasium.Env[Any, Any]):
         Raises:
             ConfigError: An option or a config field is unknown, of a wrong kind or out of bounds.
         """
+        limit = time_limit()
+        if limit is not None:
+            options.setdefault("max_episode_steps", limit)
         self._interface = Interface(
             task or self.task_name, config=config, render_mode=render_mode, options=options
         )

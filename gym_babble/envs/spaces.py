@@ -111,7 +111,7 @@ def observation_space(spec: Spec, obs: str, retina_size: int) -> spaces.Space[An
 
 
 def as_actions(action: Any, shape: tuple[int, ...]) -> NDArray[np.float32]:
-    """An action as a float32 array of `shape`.
+    """An action as a float32 array of `shape`; lists and tensors in the CPU's memory are read too.
 
     Raises:
         ActionError: The action has another shape, or is not made of real numbers.
@@ -119,8 +119,8 @@ def as_actions(action: Any, shape: tuple[int, ...]) -> NDArray[np.float32]:
     if type(action) is np.ndarray and action.dtype == np.float32 and action.shape == shape:
         return action
     try:
-        array = np.asarray(action)
-    except ValueError as error:
+        array = np.asarray(_detached(action))
+    except (ValueError, TypeError, RuntimeError) as error:
         raise ActionError(f"action is not an array: {error}") from error
     if array.dtype.kind not in "fiu":
         raise ActionError(f"action has dtype {array.dtype}, expected real numbers (float32)")
@@ -132,6 +132,14 @@ def as_actions(action: Any, shape: tuple[int, ...]) -> NDArray[np.float32]:
     huge = np.isinf(single) & np.isfinite(array)
     single[huge] = np.sign(array[huge])
     return single
+
+
+def _detached(action: Any) -> Any:
+    """Without the gradients of PyTorch's tensors, which NumPy refuses to read; in lists too."""
+    if isinstance(action, list | tuple):
+        return [_detached(one) for one in action]
+    detach = getattr(action, "detach", None)
+    return action if detach is None else detach()
 
 
 def need_reset() -> ResetNeeded:

@@ -13,6 +13,7 @@ from gymnasium.vector.utils import batch_space
 from gym_babble import _core
 from gym_babble.checks import check_threads, check_whole, processors, shown
 from gym_babble.envs.interface import RENDER_MODES, Interface, document
+from gym_babble.envs.making import Made
 from gym_babble.envs.member import BatchMember
 from gym_babble.envs.registry import task_entry
 from gym_babble.envs.spaces import as_actions
@@ -30,7 +31,7 @@ MOST_IMAGE_BYTES = 2**32
 """Size of the images of all environments together [byte]."""
 
 
-class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
+class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
     """A batch of environments of any task. Each task has a class with its arguments.
 
     Environment i of a batch that is reset with seed s is bit for bit the single environment reset
@@ -91,7 +92,7 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
         )
         self.render_mode = render_mode
         self.num_envs = num_envs = check_whole("num_envs", num_envs, 1, MOST_ENVS, "environments")
-        self._autoreset = _autoreset_mode(autoreset_mode)
+        self.autoreset_mode = _autoreset_mode(autoreset_mode)
         if threads is None:
             threads = default_threads(num_envs, self._interface.entry.envs_per_thread)
         self._threads = check_threads(threads)
@@ -105,9 +106,10 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
         self.metadata = {
             **type(self).metadata,
             "render_fps": interface.render_fps,
-            "autoreset_mode": self._autoreset,
+            "autoreset_mode": self.autoreset_mode,
         }
         self._seeded = False
+        self._own = frozenset(self.__dict__)
 
     def _make_core(self) -> None:
         if self._interface.obs == "retina":
@@ -115,7 +117,7 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
         self._batch = _core.Batch(
             self._interface.task,
             self.num_envs,
-            autoreset=self._autoreset.value,
+            autoreset=self.autoreset_mode.value,
             threads=self._threads,
         )
         self._members = [BatchMember(self._interface, self._batch, i) for i in range(self.num_envs)]
@@ -124,6 +126,14 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
     def interface(self) -> Interface:
         """Options, spec and spaces of each environment."""
         return self._interface
+
+    @property
+    def np_random_seed(self) -> tuple[int, ...]:  # type: ignore[override] # As SyncVectorEnv's.
+        """Seed of each environment's cases, which the single environment would take.
+
+        −1 where it is unknown: before the first reset, and after `set_state`.
+        """
+        return tuple(member.np_random_seed for member in self._members)
 
     @property
     def threads(self) -> int:
@@ -181,7 +191,7 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
                     member.follow()
             shown = self._batch.all()
             infos = self._infos(shown, np.ones(self.num_envs, np.bool_))
-            if self._autoreset is AutoresetMode.SAME_STEP:
+            if self.autoreset_mode is AutoresetMode.SAME_STEP:
                 self._add_final(infos)
             observation = self._observation(shown)
         return observation, shown["reward"], shown["terminated"], shown["truncated"], infos
@@ -214,26 +224,26 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
 
     def _seed(self, seed: int | Sequence[int | None] | None, mask: NDArray[np.bool_]) -> None:
         n = self.num_envs
-        if seed is None:
-            if not self._seeded:
-                for i, value in enumerate(self.np_random.integers(2**63, size=n).tolist()):
-                    self._batch.seed(i, value)
-                self._seeded = True
-            return
         if isinstance(seed, int | np.integer):
             super().reset(seed=int(seed))
-            seeds: Sequence[int | None] = [int(seed) + i for i in range(n)]
+            seeds: list[int | None] = [int(seed) + i for i in range(n)]
         else:
-            seeds = _listed(seed)
+            seeds = [None] * n if seed is None else _listed(seed)
         if len(seeds) != n:
             raise ConfigError(f"seed has {len(seeds)} values, expected {n}")
+        if not self._seeded:
+            drawn = self.np_random.integers(2**63, size=n).tolist()
+            seeds = [
+                new if given is None else given for given, new in zip(seeds, drawn, strict=True)
+            ]
+            mask = np.ones(n, np.bool_)
         streams = [
-            (i, int(np_random(value)[0].integers(2**63)))
+            (i, value, int(np_random(value)[0].integers(2**63)))
             for i, value in enumerate(seeds)
-            if not self._seeded or (mask[i] and value is not None)
+            if mask[i] and value is not None
         ]
-        for i, stream in streams:
-            self._batch.seed(i, stream)
+        for i, value, stream in streams:
+            self._members[i].seed(value, stream)
         self._seeded = True
 
     def _requests(self, options: Any) -> list[dict[str, Any] | None]:
@@ -275,7 +285,11 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
         for k, name in enumerate(spec.facts):
             infos[name] = shown["facts"][:, k] & mask
             infos[f"_{name}"] = mask.copy()
-        infos["outcome"] = np.where(mask, self._interface.outcomes[shown["outcome"]], None)
+        outcome: dict[str, Any] = {}
+        for name, code in self._interface.outcome_codes:
+            outcome[name] = (shown["outcome"] == code) & mask
+            outcome[f"_{name}"] = mask.copy()
+        infos["outcome"] = outcome
         infos["_outcome"] = mask.copy()
         infos["reward_terms"] = terms
         infos["_reward_terms"] = mask.copy()
@@ -288,7 +302,7 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
             return
         indices, last = ended
         goals = self._goals(last)
-        spec, outcomes = self._interface.spec, self._interface.outcomes
+        spec, codes = self._interface.spec, self._interface.outcome_codes
         for name in spec.reward_terms:
             # The new episodes have had no reward yet; what the step gave stands in `final_info`.
             infos["reward_terms"][name][indices] = 0.0
@@ -298,7 +312,7 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
                 size = self._interface.retina_size
                 retina = self._batch.retina_ended(i, size)
             info = dict(zip(spec.facts, last["facts"][k].tolist(), strict=True))
-            info["outcome"] = outcomes[last["outcome"][k]]
+            info["outcome"] = {name: bool(last["outcome"][k] == code) for name, code in codes}
             terms = last["terms"][k].tolist()
             info["reward_terms"] = dict(zip(spec.reward_terms, terms, strict=True))
             final = {
@@ -351,28 +365,41 @@ class BabbleVectorEnv(VectorEnv[Any, Any, Any]):
         return self.call(name)
 
     def set_attr(self, name: str, values: Any) -> None:
-        """Sets an attribute of the batch, which its environments share.
+        """Sets an attribute of your own in each environment.
 
         Args:
             name: Name of the attribute.
-            values: One value for all, or a list or tuple with an equal one for each environment.
+            values: One value for all, or a list or tuple with one for each environment.
 
         Raises:
-            AttributeError: The environments have their own values of it, set at a reset.
-            ConfigError: The values are not as many as the environments, or differ.
+            AttributeError: The environments themselves have an attribute of this name.
+            ConfigError: The values are not as many as the environments.
         """
-        if hasattr(BatchMember, name) or name in ("interface", "observation_space", "action_space"):
-            raise AttributeError(f"{name} cannot be set; make the environment anew")
-        if isinstance(values, list | tuple):
-            if len(values) != self.num_envs or any(value != values[0] for value in values[1:]):
-                raise ConfigError(f"{name}: expected one value, or {self.num_envs} equal ones")
-            values = values[0]
-        setattr(self, name, values)
+        if not isinstance(values, list | tuple):
+            values = [values] * self.num_envs
+        if len(values) != self.num_envs:
+            raise ConfigError(f"{name}: {len(values)} values, expected one or {self.num_envs}")
+        for i, value in enumerate(values):
+            self.set_of_one(i, name, value)
+
+    def set_of_one(self, i: int, name: str, value: Any) -> None:
+        """Sets an attribute of your own in environment i.
+
+        Raises:
+            AttributeError: The environment itself has an attribute of this name.
+        """
+        member = self._members[i]
+        if name in self._own or hasattr(type(self), name) or hasattr(member, name):
+            raise AttributeError(f"{name} cannot be set: the environment has it by itself")
+        member.attributes[name] = value
 
     def of_one(self, i: int, name: str) -> Any:
         """An attribute or method of environment i; what is not its own is the batch's."""
-        if hasattr(BatchMember, name) and not name.startswith("_"):
-            return getattr(self._members[i], name)
+        member = self._members[i]
+        if name in member.attributes:
+            return member.attributes[name]
+        if hasattr(member, name) and not name.startswith("_"):
+            return getattr(member, name)
         if name == "observation_space":
             return self.single_observation_space
         if name == "action_space":

@@ -13,6 +13,7 @@ import numpy as np
 from gym_babble.agents import Random, Scripted
 from gym_babble.agents.base import predictor
 from gym_babble.envs import BabbleReachEnv
+from gym_babble.envs.interface import outcome_of
 from gym_babble.errors import ScenarioError
 from gym_babble.study.evaluation import evaluate
 from gym_babble.study.scenarios import scenarios
@@ -55,7 +56,7 @@ def trajectories(
         action, _ = predict(observation, None, np.array([True]), True)  # noqa: FBT003
         *_, info = env.step(action)
         b1 = 0.5 + 0.5 * float(action[0])
-        made.append(Trajectory(case, env.trajectory, b1, info["outcome"]))
+        made.append(Trajectory(case, env.trajectory, b1, outcome_of(info)))
     return made
 
 

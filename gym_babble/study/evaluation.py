@@ -196,7 +196,8 @@ def _play(
         ending = running & ended
         last = infos.get("final_info", infos)  # Restarted already, in mode SameStep.
         if ending.any():
-            outcomes[ending] = last["outcome"][ending]
+            for name in spec.outcomes:
+                outcomes[ending & last["outcome"][name]] = name
             for name, values in facts.items():
                 values[ending] = last[name][ending]
         running &= ~ended

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gym_babble.agents.base import predictor
+from gym_babble.envs.interface import outcome_of
 from gym_babble.errors import MissingExtraError
 from gym_babble.files import write_files
 
@@ -64,7 +65,7 @@ def record(
         frames += env.render()
         start, running = False, not (terminated or truncated)
     env.close()
-    return Film(frames, env.metadata["render_fps"], info["outcome"])
+    return Film(frames, env.metadata["render_fps"], outcome_of(info))
 
 
 def contact_sheet(

@@ -26,6 +26,20 @@ pub enum EnvError {
         /// The values there are.
         known: String,
     },
+    /// An option has another value than the environment's id stands for.
+    #[error("{option} = {value:?}: {id} has {own:?} always; use {others}")]
+    Fixed {
+        /// Name of the option.
+        option: &'static str,
+        /// The value given.
+        value: String,
+        /// The environment's id.
+        id: &'static str,
+        /// The value that it has.
+        own: String,
+        /// The environments that can have the value given.
+        others: String,
+    },
     /// A name is not one of those that there are.
     #[error("unknown {kind} {name:?}{hint}; there are {known}")]
     UnknownName {

@@ -55,10 +55,12 @@ pub type MakeTask = fn(Config, &OptionValues) -> Result<Arc<dyn AnyTask>, EnvErr
 pub struct EnvironmentEntry {
     /// Its id.
     pub id: &'static str,
-    /// Options that differ from the task's defaults; each can still be given.
+    /// Options that differ from the task's defaults; those that are not fixed can still be given.
     pub presets: &'static [(&'static str, &'static str)],
-    /// Time limit in control steps for Gymnasium's wrapper; none where options decide the limit.
-    pub max_episode_steps: Option<u32>,
+    /// Options that cannot be given another value, because they decide the time limit.
+    pub fixed: &'static [&'static str],
+    /// Time limit in control steps.
+    pub max_episode_steps: u32,
     /// Mean return at which the task counts as solved: success in nine cases of ten; none where no
     /// agent of ours solves it.
     pub reward_threshold: Option<f64>,
@@ -143,12 +145,44 @@ pub fn environment(id: &str) -> Result<(&'static TaskEntry, &'static Environment
 /// ```
 ///
 /// # Errors
-/// [`EnvError::UnknownName`] for an unknown id; else as [`TaskEntry::make`].
+/// As [`check_fixed`] and [`TaskEntry::make`].
 pub fn make(id: &str, config: Config, options: &Options) -> Result<Arc<dyn AnyTask>, EnvError> {
+    check_fixed(id, options)?;
     let (task, row) = environment(id)?;
     let mut all = presets(row.presets);
     all.extend(options.clone());
     task.make(config, &all)
+}
+
+/// Checks that options leave an environment what its id stands for.
+///
+/// # Errors
+/// [`EnvError::UnknownName`] for an unknown id, [`EnvError::Fixed`] for a fixed option with another
+/// value; it names the environments that have this value.
+pub fn check_fixed(id: &str, options: &Options) -> Result<(), EnvError> {
+    let (task, row) = environment(id)?;
+    let own = |row: &EnvironmentEntry| OptionValues::read(task.options, &presets(row.presets));
+    let values = own(row)?;
+    for &option in row.fixed {
+        let given = options.get(option).and_then(Value::as_str);
+        let Some(given) = given.filter(|&given| given != values.name(option)) else {
+            continue;
+        };
+        let mut others = Vec::new();
+        for other in task.environments {
+            if !other.fixed.contains(&option) || own(other)?.name(option) == given {
+                others.push(other.id);
+            }
+        }
+        return Err(EnvError::Fixed {
+            option,
+            value: given.to_owned(),
+            id: row.id,
+            own: values.name(option).to_owned(),
+            others: others.join(", "),
+        });
+    }
+    Ok(())
 }
 
 /// Preset options as values.

@@ -123,8 +123,11 @@ fn sampled_cases_can_be_solved_in_their_control() {
         let task = task(control(of));
         for i in 0..25 {
             let stream = || Stream::new(Purpose::Test, 5, i);
-            let case = CaseRequest::default().draw(&task, &mut stream(), &Stop::default()).unwrap();
-            let legal = ReachCase::draw_legal(&task, &mut stream(), fidelity, &Stop::default()).unwrap();
+            let case = CaseRequest::default()
+                .draw(&task, &mut stream(), &Stop::default())
+                .unwrap();
+            let legal =
+                ReachCase::draw_legal(&task, &mut stream(), fidelity, &Stop::default()).unwrap();
             assert_eq!(case, legal);
             assert!(is_solvable(&task, &case, fidelity), "{of}");
             let [start, target] = [case.hand, case.target];
@@ -137,7 +140,9 @@ fn sampled_cases_can_be_solved_in_their_control() {
                 ..CaseRequest::default()
             };
             for request in [from, to] {
-                let case = request.draw(&task, &mut stream(), &Stop::default()).unwrap();
+                let case = request
+                    .draw(&task, &mut stream(), &Stop::default())
+                    .unwrap();
                 assert!(is_solvable(&task, &case, fidelity), "{of} {request:?}");
             }
         }

@@ -38,6 +38,10 @@ pub(crate) struct Batch {
     facts: Vec<Py<PyString>>,
     /// Names of the reward terms.
     terms: Vec<Py<PyString>>,
+    /// Names of the outcomes.
+    outcomes: Vec<Py<PyString>>,
+    /// The outcomes, in the same order.
+    outcome_names: Vec<&'static str>,
 }
 
 #[pymethods]
@@ -70,6 +74,8 @@ impl Batch {
             goals: spec.goal_len(),
             facts: names(spec.facts),
             terms: names(spec.reward_terms),
+            outcomes: names(&spec.outcomes),
+            outcome_names: spec.outcomes,
         })
     }
 
@@ -275,7 +281,10 @@ impl Batch {
             return Ok(PyTuple::empty(py));
         };
         let shown = named(py, &self.facts, &info.facts)?;
-        shown.set_item(intern!(py, "outcome"), info.outcome.name())?;
+        let now = info.outcome.name();
+        let outcome: Vec<bool> = self.outcome_names.iter().map(|&name| name == now).collect();
+        let outcome = named(py, &self.outcomes, &outcome)?;
+        shown.set_item(intern!(py, "outcome"), outcome)?;
         let terms = named(py, &self.terms, &step.terms)?;
         shown.set_item(intern!(py, "reward_terms"), terms)?;
         (

@@ -42,7 +42,7 @@ mod _core {
     #[pymodule_export]
     use crate::reach::{movement, place, posture_at};
     #[pymodule_export]
-    use crate::task::{Task, registry_json};
+    use crate::task::{Task, check_fixed, registry_json};
     use pyo3::prelude::*;
 
     #[pymodule_init]

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use babble_env::{AnyTask, Config, EnvError, Purpose, registry};
+use babble_env::{AnyTask, Config, EnvError, Options, Purpose, registry};
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -35,8 +35,7 @@ impl Task {
     /// A task of the registry by its name, from a config and options by name, both as JSON.
     #[new]
     fn new(name: &str, config: &str, options: &str) -> PyResult<Self> {
-        let options = serde_json::from_str(options)
-            .map_err(|error| errors::ConfigError::new_err(format!("options: {error}")))?;
+        let options = read_options(options)?;
         let make = || registry::task(name)?.make(Config::from_json(config)?, &options);
         Ok(Self {
             task: make().map_err(errors::env)?,
@@ -103,6 +102,17 @@ impl Task {
         let rewards = pairs.map(|(achieved, desired)| self.task.goal_reward(achieved, desired));
         Ok(PyArray1::from_iter(py, rewards.collect::<Vec<_>>()))
     }
+}
+
+/// Checks that options (JSON) leave an environment what its id stands for.
+#[pyfunction]
+pub(crate) fn check_fixed(env_id: &str, options: &str) -> PyResult<()> {
+    registry::check_fixed(env_id, &read_options(options)?).map_err(errors::env)
+}
+
+fn read_options(json: &str) -> PyResult<Options> {
+    serde_json::from_str(json)
+        .map_err(|error| errors::ConfigError::new_err(format!("options: {error}")))
 }
 
 /// All tasks with their environments, options, parts of a case and protocols, as JSON.

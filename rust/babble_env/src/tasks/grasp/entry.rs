@@ -31,24 +31,34 @@ pub(crate) const ENTRY: TaskEntry = TaskEntry {
 };
 
 /// Thresholds are success in nine cases of ten: a hand that goes straight to the object and closes has
-/// mean returns of 5.8 and 1. The time limit depends on the region.
-const ENVIRONMENTS: [EnvironmentEntry; 3] = [
+/// mean returns of 5.8 and 1.
+const ENVIRONMENTS: [EnvironmentEntry; 4] = [
     EnvironmentEntry {
         id: "BabbleGrasp-v0",
         presets: &[],
-        max_episode_steps: None,
+        fixed: &["region"],
+        max_episode_steps: Region::PalmSide.max_episode_steps(),
         reward_threshold: Some(5.5),
     },
     EnvironmentEntry {
         id: "BabbleGraspSparse-v0",
         presets: &[("reward", "sparse")],
-        max_episode_steps: None,
+        fixed: &["region"],
+        max_episode_steps: Region::PalmSide.max_episode_steps(),
         reward_threshold: Some(0.9),
     },
     EnvironmentEntry {
         id: "BabbleGraspGoal-v0",
         presets: &[("obs", "goal"), ("reward", "sparse")],
-        max_episode_steps: None,
+        fixed: &["region"],
+        max_episode_steps: Region::PalmSide.max_episode_steps(),
+        reward_threshold: None,
+    },
+    EnvironmentEntry {
+        id: "BabbleGraspFull-v0",
+        presets: &[("region", "full")],
+        fixed: &["region"],
+        max_episode_steps: Region::Full.max_episode_steps(),
         reward_threshold: None,
     },
 ];
@@ -70,7 +80,8 @@ const OPTIONS: [OptionSpec; 13] = [
         "region",
         &[Region::PalmSide.name(), Region::Full.name()],
         Region::PalmSide.name(),
-        "Where objects lie and arms start: on the palm's side, or in all of the plane.",
+        "Where objects lie and arms start: on the palm's side, or in all of the plane, which is \
+         BabbleGraspFull-v0.",
     ),
     OptionSpec {
         name: "diameters",

@@ -35,26 +35,30 @@ const ENVIRONMENTS: [EnvironmentEntry; 4] = [
     EnvironmentEntry {
         id: "BabbleReach-v0",
         presets: &[],
-        max_episode_steps: Some(MAX_EPISODE_STEPS),
+        fixed: &[],
+        max_episode_steps: MAX_EPISODE_STEPS,
         reward_threshold: Some(2.3),
     },
     EnvironmentEntry {
         id: "BabbleReachSparse-v0",
         presets: &[("reward", "sparse")],
-        max_episode_steps: Some(MAX_EPISODE_STEPS),
+        fixed: &[],
+        max_episode_steps: MAX_EPISODE_STEPS,
         reward_threshold: Some(0.9),
     },
     EnvironmentEntry {
         id: "BabbleReachGoal-v0",
         presets: &[("obs", "goal"), ("reward", "sparse")],
-        max_episode_steps: Some(MAX_EPISODE_STEPS),
+        fixed: &[],
+        max_episode_steps: MAX_EPISODE_STEPS,
         reward_threshold: Some(-120.0),
     },
     // An episode is one step.
     EnvironmentEntry {
         id: "BabbleReachPattern-v0",
         presets: &[("control", "pattern"), ("reward", "sparse")],
-        max_episode_steps: None,
+        fixed: &["control"],
+        max_episode_steps: 1,
         reward_threshold: Some(0.9),
     },
 ];

@@ -17,7 +17,8 @@ pub(crate) const ENTRY: TaskEntry = TaskEntry {
     environments: &[EnvironmentEntry {
         id: "BabbleToy-v0",
         presets: &[],
-        max_episode_steps: None,
+        fixed: &[],
+        max_episode_steps: 50,
         reward_threshold: Some(0.9),
     }],
     options: &[

@@ -1,0 +1,57 @@
+"""Runs the snippets of docs/frameworks.md that need an environment of their own.
+
+Called with a name in ENVIRONMENTS, by that environment's Python: `make frameworks`.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+ENVIRONMENTS = {
+    "learners": ("stable-baselines3", "rl-zoo3", "TorchRL", "skrl", "Tianshou", "Minari"),
+    "rllib": ("RLlib",),
+    "lerobot": ("LeRobot",),
+}
+"""The sections that each environment runs."""
+
+
+def section(text: str, name: str) -> str:
+    """The section of the page whose heading begins with a name."""
+    found = re.search(rf"^## {re.escape(name)} .*?(?=^## )", text, re.MULTILINE | re.DOTALL)
+    if found is None:
+        sys.exit(f"docs/frameworks.md has no section {name}")
+    return found[0]
+
+
+def commands(name: str) -> list[list[str]]:
+    """What to run for a section: its Python, and its commands by this Python."""
+    text = section((ROOT / "docs" / "frameworks.md").read_text(encoding="utf-8"), name)
+    blocks = re.findall(r"^```(python|sh)\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    found = []
+    for language, code in blocks:
+        if language == "python":
+            found.append([sys.executable, "-c", code])
+        else:
+            lines = code.replace("\\\n", " ").splitlines()
+            found += [[sys.executable, *line.split()[1:]] for line in lines]
+    return found
+
+
+def main() -> None:
+    """Runs the sections one after the other, and stops at the first that fails."""
+    for name in ENVIRONMENTS[sys.argv[1]]:
+        print(f"== {name}", flush=True)
+        for command in commands(name):
+            with tempfile.TemporaryDirectory() as folder:
+                # rl-zoo3 reads its settings from the repository.
+                (Path(folder) / "examples").symlink_to(ROOT / "examples")
+                subprocess.run(command, cwd=folder, check=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -22,7 +22,7 @@ CONTROLS = {
     "grasp": ("delta_posture", "posture", "torque"),
 }
 IDS = ("BabbleReachGoal-v0", "BabbleGrasp-v0")
-"""The other ids have the same cases, but for the one in which objects are carried."""
+"""The others have the same cases, but for `BabbleGraspFull-v0` and `BabbleGraspGoal-v0`."""
 
 
 class Muscles:

@@ -291,6 +291,6 @@ def solved(stores: Stores) -> str:
 
 BLOCKS: dict[str, Callable[[Stores], str]] = {
     block.__name__: block
-    for block in (table1_short, table1, fig4, ppo_reach, sizes, engines, solved)
+    for block in (table1_short, table1, fig4, ppo_reach, sizes, engines, grasping, solved)
 }
 """The tables by name."""

@@ -49,6 +49,7 @@ STORES: dict[str, dict[str, str]] = {
     "solved": {id_: f"python examples/solvable.py --ids {id_}" for id_ in SOLVED},
     "fig4": {"paper": "gym-babble reproduce fig4"},
     "fig5": {"paper": "gym-babble reproduce fig5"},
+    "grasp": {"hebb": "gym-babble compare --task grasp --agents hebb-paper --seeds 3"},
     "sizes": {
         "tree": HOLD,
         "independent": f"{HOLD} --fingers independent --diameters 2.4 6 8",

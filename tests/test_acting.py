@@ -127,9 +127,12 @@ def test_cases_of_a_region_bring_it_with_its_time_limit():
     assert found.steps == (500,) * 6 + (240,) * 2
     assert found.cases == tuple(cases)
     assert evaluate(idle, cases=cases[:2], max_episode_steps=30).steps == (30, 30)
-    with pytest.raises(ScenarioError, match=r"'full' is for .*region='full'.*region='palm_side'"):
-        BabbleGraspEnv().reset(options={"scenario": cases[0]})
-    BabbleGraspEnv(region="full").reset(options={"scenario": cases[0]})
+    named = r"'full' is for BabbleGraspFull-v0 .*region='full'.*region='palm_side'"
+    for env_id in ("BabbleGrasp-v0", "BabbleGraspSparse-v0"):
+        with pytest.raises(ScenarioError, match=named):
+            gym.make(env_id).reset(options={"scenario": cases[0]})
+    gym.make("BabbleGraspFull-v0").reset(options={"scenario": cases[0]})
+    assert evaluate(idle, "BabbleGraspFull-v0", cases[:2]).steps == (500, 500)
     everywhere = Random(BabbleGraspEnv(region="full"), seed=0)
     played = evaluate(everywhere, max_episode_steps=1)
     assert {case["protocol"] for case in played.cases} == {"full"}

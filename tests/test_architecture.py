@@ -49,7 +49,7 @@ SHARED = {
         "spec",
         "task",
     ),
-    "gym_babble/envs": ("interface", "member", "registry", "single", "vector", "window"),
+    "gym_babble/envs": ("interface", "making", "member", "registry", "single", "vector", "window"),
 }
 OF_ONE_TASK = re.compile(
     r"(?i)\w*(reach|grasp)\w*|\b(is|ever)_success\b|\b(obstacle|target|control|b1)\b"

@@ -1,6 +1,7 @@
 """PPO's presets and what `train_ppo` says of its runs."""
 
 import json
+import re
 
 import gymnasium as gym
 import numpy as np
@@ -98,3 +99,25 @@ def test_bad_arguments(arguments, named):
     names = ("preset", "steps", "validation_cases")
     with pytest.raises(ConfigError, match=named):
         train_ppo(**dict(zip(names, arguments, strict=False)))
+
+
+@pytest.mark.parametrize("name", ["pattern", "delta_posture", "grasp"])
+def test_the_settings_for_rl_zoo3_are_the_presets(repository, name):
+    preset = PRESETS[name]
+    text = (repository / "examples" / "rl_zoo3" / "ppo.yml").read_text(encoding="utf-8")
+    block = re.search(rf"^{preset.env_id}:\n((?:  .+\n)+)", text, re.MULTILINE)[1]
+    found = dict(line.strip().split(": ", 1) for line in block.splitlines())
+    numbers = {
+        key: float(re.sub("!!float |lin_", "", value))
+        for key, value in found.items()
+        if not key.startswith("policy")
+    }
+    rate = preset.settings["learning_rate"]
+    expected = {**preset.settings, "learning_rate": getattr(rate, "start", rate)}
+    assert found["learning_rate"].startswith("lin_") == hasattr(rate, "start")
+    assert numbers == {"n_timesteps": preset.steps, "n_envs": preset.num_envs, **expected}
+    policy = preset.policy
+    assert found["policy_kwargs"] == (
+        f"dict(activation_fn=nn.{policy['activation_fn'].__name__}, "
+        f"net_arch={policy['net_arch']}, log_std_init={policy['log_std_init']})"
+    )

@@ -69,9 +69,7 @@ def _elsewhere(
     ids = [
         row.id
         for row in ENVIRONMENTS
-        if row.task == task
-        and all(row.options[key] == value for key, value in differing.items())
-        and all(row.options[key] == options[key] for key in ("obs", "reward"))
+        if row.task == task and all(row.options[key] == value for key, value in differing.items())
     ]
     named = ", ".join(f"{key}={value!r}" for key, value in differing.items())
     here = ", ".join(f"{key}={options[key]!r}" for key in differing)

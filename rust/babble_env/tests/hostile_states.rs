@@ -5,12 +5,12 @@ mod playing;
 
 use babble_body::Obstacle;
 use babble_env::progress::Phase;
-use babble_env::tasks::grasp::{GraspRequest, GraspState, Grip};
+use babble_env::tasks::grasp::{Contacts, Enclosure, GraspRequest, GraspState, Grip};
 use babble_env::tasks::reach::ReachState;
 use babble_env::tasks::reach::{CaseRequest, ObstacleRequest};
 use babble_env::{
-    Autoreset, Batch, Control, EnvError, GraspOptions, GraspTask, Outcome, ReachOptions, Task,
-    snapshot,
+    Autoreset, Batch, Config, Control, EnvError, GraspOptions, GraspTask, Outcome, ReachOptions,
+    Task, snapshot,
 };
 use babble_eye::Gaze;
 use nalgebra::Vector2;
@@ -123,7 +123,7 @@ fn in_contact(engine: &str) -> Batch<GraspTask> {
 fn nonsense_of_grasping_is_refused() {
     for engine in ["tree", "rapier"] {
         let mut env = in_contact(engine);
-        let cases: [(&str, Spoil<GraspState>); 24] = [
+        let cases: [(&str, Spoil<GraspState>); 25] = [
             ("case.start", &|s| s.case.start[0] = NAN),
             ("case.object", &|s| s.case.object[0] = INF),
             ("case.diameter", &|s| s.case.diameter = NAN),
@@ -150,6 +150,15 @@ fn nonsense_of_grasping_is_refused() {
             }),
             ("support", &|s| s.enclosure.grip = Grip::Tried(3)),
             ("tried still", &|s| s.enclosure.grip = Grip::Tried(u32::MAX)),
+            ("one side of the hand", &|s| {
+                let numbers = Config::profile("paper").unwrap().grasp;
+                let enclosing = Contacts {
+                    enclosing: 1,
+                    ..Contacts::default()
+                };
+                s.enclosure = Enclosure::default();
+                s.enclosure.step(&numbers, enclosing, false);
+            }),
             ("start", &|s| s.lifecycle.request.start = Some([NAN, 0.0])),
             ("diameter", &|s| {
                 s.lifecycle.request = GraspRequest {

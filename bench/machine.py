@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import platform
 import shutil
 import subprocess
@@ -13,6 +12,7 @@ from typing import Any
 
 from bench.cases import OURS
 from bench.process import ROOT, VENVS, interpreter
+from gym_babble.checks import processors
 
 PACKAGES = {
     OURS: ("gym-babble", "gymnasium", "numpy"),
@@ -58,7 +58,7 @@ def describe() -> dict[str, Any]:
     return {
         "date": time.strftime("%Y-%m-%d"),
         "cpu": _processor(),
-        "cores": os.cpu_count(),
+        "cores": processors(),
         "system": f"{platform.system()} {platform.machine()}",
         "python": platform.python_version(),
         "rustc": _printed(["rustc", "--version"]).split()[1],

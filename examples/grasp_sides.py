@@ -6,7 +6,6 @@ on the shoulder's start relative to the object. docs/grasping.md has the results
 
 import argparse
 import json
-import os
 from itertools import pairwise
 
 import numpy as np
@@ -21,7 +20,7 @@ arguments = parser.parse_args()
 
 cases = scenarios("full", arguments.cases, split="validation")
 agent = Scripted("BabbleGrasp-v0")
-result = evaluate(agent, cases=cases, max_episode_steps=240, threads=os.cpu_count())
+result = evaluate(agent, cases=cases, max_episode_steps=240)
 polar = np.degrees([np.arctan2(case["object"][1], case["object"][0]) for case in cases])
 ahead = polar - np.degrees([case["start"][0] for case in cases])
 held, palm = (np.array(result.facts[name]) for name in ("held", "palm_reach"))

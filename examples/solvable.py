@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 from typing import Any
 
 import gymnasium
 import numpy as np
 
 from gym_babble import Config, Oracle, Scripted, evaluate
+from gym_babble.checks import processors
 from gym_babble.envs.registry import ENVIRONMENTS
 
 CONTROLS = {
@@ -63,7 +63,7 @@ def solved(kind: Any, row: Any, control: str, n: int) -> int:
     agent = kind(gymnasium.make(row.id, control=planned))
     if control == "torque":
         agent = Muscles(agent, row.task)
-    threads = os.cpu_count() or 1
+    threads = processors()
     return evaluate(agent, row.id, cases, control=control, threads=threads).count("ever_success")
 
 

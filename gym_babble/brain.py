@@ -24,6 +24,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gym_babble import _core
+from gym_babble.checks import (
+    check_number,
+    check_threads,
+    check_whole,
+    numbers,
+    plain,
+    shaped,
+    shown,
+)
 from gym_babble.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -44,6 +53,11 @@ __all__ = [
 ]
 
 T = TypeVar("T", bound=np.generic)
+
+MOST_NEURONS = 2**24
+"""Neurons of a map, and pairs of neurons of two maps."""
+MOST_ACTIVITIES = 2**30
+"""Activities that are computed at once."""
 
 Floats: TypeAlias = NDArray[np.float32]
 
@@ -123,10 +137,10 @@ class PopulationMap:
         high: ArrayLike,
         sigma: float = 0.7,
     ) -> None:
-        lows = np.atleast_1d(np.asarray(low, float)).tolist()
-        counts = np.broadcast_to(np.asarray(neurons), len(lows)).tolist()
-        highs = np.atleast_1d(np.asarray(high, float)).tolist()
-        self._core = _core.PopulationMap(counts, lows, highs, sigma)
+        lows = _axes("low", low)
+        counts = _counts(neurons, len(lows))
+        sigma = check_number("sigma", sigma, 0.0, 1e6, "spacings of neurons")
+        self._core = _core.PopulationMap(counts, lows, _axes("high", high), sigma)
         self.shape: tuple[int, ...] = tuple(counts[::-1])
         """Neurons along each axis, the last axis first: `g.reshape(map.shape)` is a picture of
         g."""
@@ -145,21 +159,22 @@ class PopulationMap:
 
         g_j = exp(−|x_j − x|² / (2 σ²)), with lengths in spacings of neurons.
         """
-        return _each(self._core.encode, x, np.float64)
+        return _each(self._core.encode, "x", x, np.float64, width=len(self))
 
     def read_out(self, a: ArrayLike) -> NDArray[np.float64]:
         """The mean (d,) of the preferred values, weighted with activities (N,) (Eq. 4).
 
         For activities (n, N), values (n, d). A silent map reads its middle.
         """
-        return _each(self._core.read_out, a, np.float32)
+        return _each(self._core.read_out, "a", a, np.float32)
 
     def read_out_peak(self, a: ArrayLike, radius: int = 2) -> NDArray[np.float64]:
         """The same mean, over the neurons within `radius` places of the strongest one.
 
         Given two peaks, this reads the higher one; the mean over all neurons lies between them.
         """
-        return _each(lambda a: self._core.read_out(a, radius), a, np.float32)
+        radius = check_whole("radius", radius, 0, 1024, "neurons")
+        return _each(lambda a: self._core.read_out(a, radius), "a", a, np.float32)
 
 
 class ConjunctiveMap:
@@ -167,9 +182,16 @@ class ConjunctiveMap:
 
     Goes beyond the paper. The activities of all pairs sum to one. Neuron j pairs neuron j % n of
     `inner`, which has n neurons, with neuron j // n of `outer`.
+
+    Raises:
+        ConfigError: They are not two maps, or have more than 2^24 pairs.
     """
 
     def __init__(self, inner: PopulationMap, outer: PopulationMap) -> None:
+        for name, part in (("inner", inner), ("outer", outer)):
+            if not isinstance(part, PopulationMap):
+                raise ConfigError(f"{name} = {shown(part)} is not a PopulationMap")
+        check_whole("len(inner) * len(outer)", len(inner) * len(outer), 1, MOST_NEURONS, "neurons")
         self._core = _core.ConjunctiveMap(inner._core, outer._core)  # noqa: SLF001 - of this module
         self.shape: tuple[int, ...] = (*outer.shape, *inner.shape)
         """Neurons along each axis, those of `outer` first."""
@@ -180,8 +202,10 @@ class ConjunctiveMap:
 
     def encode(self, inner: ArrayLike, outer: ArrayLike) -> Floats:
         """Activities (N,) for a value of each map, or (n, N) for n values of each."""
-        second = np.atleast_2d(np.asarray(outer, np.float64))
-        return _each(lambda x: self._core.encode(x, second), inner, np.float64)
+        second = _rows("outer", outer, np.float64)
+        return _each(
+            lambda x: self._core.encode(x, second), "inner", inner, np.float64, width=len(self)
+        )
 
 
 class Association:
@@ -193,7 +217,7 @@ class Association:
         rule: A rule of this module, its name, or a function of your own (see `OwnRule`).
         numbers: `eta`, `w_max` and `xi`, where they differ from the rule's; a function is given
             η = 1, w_max = 0.2 and averages with ξ = 0.2.
-        threads: Threads that learn; the bits do not depend on them.
+        threads: Threads that learn; all processors for None. The bits do not depend on them.
 
     Raises:
         ConfigError: An argument is out of its bounds.
@@ -205,19 +229,20 @@ class Association:
         n_out: int,
         rule: RuleLike = "covariance",
         *,
-        threads: int = 1,
+        threads: int | None = 1,
         **numbers: float,
     ) -> None:
-        self._core = _core.Association(n_in, n_out)
+        n_in = check_whole("n_in", n_in, 1, MOST_ACTIVITIES, "neurons")
+        self._core = _core.Association(
+            n_in, check_whole("n_out", n_out, 1, MOST_ACTIVITIES // n_in, "neurons")
+        )
         self._own: Any = rule if is_own(rule) else None
         self._numbers = rule_numbers(rule)
         for name, value in numbers.items():
             if name not in self._numbers:
                 raise ConfigError(f"{name}: the rule has {', '.join(self._numbers)}")
-            if not np.isfinite(value):
-                raise ConfigError(f"{name} = {value} is not finite")
-            self._numbers[name] = value
-        self._threads = threads
+            self._numbers[name] = check_number(name, value, 0.0, 3e38, "for a rule")
+        self._threads = check_threads(threads)
 
     def learn(self, g: ArrayLike, a: ArrayLike) -> None:
         """Learns from activities g (n_in,) and a (n_out,), or from m of each in their order.
@@ -228,23 +253,24 @@ class Association:
         Raises:
             ConfigError: Activities of another shape or outside of [0, 1], or the result of a
                 function of your own is not a Δw. Nothing is learnt then.
+            BusyError: Another thread uses the association.
         """
-        gs = np.atleast_2d(np.asarray(g, np.float32))
-        as_ = np.atleast_2d(np.asarray(a, np.float32))
+        gs, as_ = _rows("g", g, np.float32), _rows("a", a, np.float32)
         if self._own is None:
             self._core.learn(json.dumps(self._numbers), gs, as_, self._threads)
             return
-        taught = teach(self._own, self._numbers)(self.weights, self.a_mean, self.g_mean, gs, as_)
-        weights, a_mean, g_mean = taught
-        self._core.set_weights(weights)
-        self._core.set_means(a_mean, g_mean)
+        learn = teach(self._own, self._numbers)
+        with self._core:
+            weights, a_mean, g_mean = learn(self.weights, self.a_mean, self.g_mean, gs, as_)
+            self._core.set_weights(weights)
+            self._core.set_means(a_mean, g_mean)
 
     def recall(self, g: ArrayLike) -> Floats:
         """Activities a_j = max(tanh(Σ_i w_ji g_i), 0) that activities g call up.
 
         (n_out,) for g (n_in,), or (m, n_out) for g (m, n_in).
         """
-        return _each(self._core.recall, g, np.float32)
+        return _each(self._core.recall, "g", g, np.float32, width=len(self.a_mean))
 
     @property
     def weights(self) -> Floats:
@@ -253,7 +279,7 @@ class Association:
 
     @weights.setter
     def weights(self, weights: ArrayLike) -> None:
-        self._core.set_weights(np.asarray(weights, np.float32))
+        self._core.set_weights(shaped("weights", weights, self.weights.shape))
 
     @property
     def a_mean(self) -> Floats:
@@ -262,7 +288,9 @@ class Association:
 
     @a_mean.setter
     def a_mean(self, a_mean: ArrayLike) -> None:
-        self._core.set_means(np.asarray(a_mean, np.float32), self.g_mean)
+        with self._core:
+            means = shaped("a_mean", a_mean, self.a_mean.shape)
+            self._core.set_means(means, self.g_mean)
 
     @property
     def g_mean(self) -> Floats:
@@ -271,7 +299,9 @@ class Association:
 
     @g_mean.setter
     def g_mean(self, g_mean: ArrayLike) -> None:
-        self._core.set_means(self.a_mean, np.asarray(g_mean, np.float32))
+        with self._core:
+            means = shaped("g_mean", g_mean, self.g_mean.shape)
+            self._core.set_means(self.a_mean, means)
 
 
 class TimeBaseGenerator:
@@ -283,19 +313,23 @@ class TimeBaseGenerator:
     Args:
         b1: Parameter of cx, between 0 and 1.
         b2: Parameter of cy, between 0 and 1.
+
+    Raises:
+        ConfigError: A parameter is not a number between 0 and 1.
     """  # noqa: RUF002 - the paper's symbols
 
     def __init__(self, b1: float, b2: float) -> None:
-        self.b1, self.b2 = b1, b2
+        self.b1 = check_number("b1", b1, 0.0, 1.0, "")
+        self.b2 = check_number("b2", b2, 0.0, 1.0, "")
         self.curve(1)
 
     def curve(self, n: int) -> NDArray[np.float64]:
         """(cx, cy) at the times k T/n, k = 0 … n (n + 1, 2); T is the duration of the movement.
 
         Raises:
-            ConfigError: A parameter is outside of (0, 1).
+            ConfigError: n is not a whole number in [1, 1000000].
         """
-        return _core.generator_curve(self.b1, self.b2, n)
+        return _core.generator_curve(self.b1, self.b2, check_whole("n", n, 1, 1_000_000, "times"))
 
 
 def place(start: ArrayLike, target: ArrayLike, curve: ArrayLike) -> NDArray[np.float64]:
@@ -305,9 +339,18 @@ def place(start: ArrayLike, target: ArrayLike, curve: ArrayLike) -> NDArray[np.f
         start: Where (0, 0) comes to lie (2,), in any unit of length.
         target: Where (1, 1) comes to lie (2,).
         curve: The curve.
+
+    Raises:
+        ConfigError: An argument has another shape, or is not made of finite numbers.
     """
-    (x0, y0), (x1, y1) = np.asarray(start, float).tolist(), np.asarray(target, float).tolist()
-    return _core.place_curve((x0, y0), (x1, y1), np.asarray(curve, float))
+    (x0, y0), (x1, y1) = (
+        shaped(name, point, (2,), np.float64).tolist()
+        for name, point in (("start", start), ("target", target))
+    )
+    points = numbers("curve", curve)
+    if points.ndim != 2:
+        raise ConfigError(f"curve has shape {points.shape}, expected (n, 2)")
+    return _core.place_curve((x0, y0), (x1, y1), points)
 
 
 def is_own(rule: Any) -> bool:
@@ -319,16 +362,16 @@ def rule_numbers(rule: Any) -> dict[str, Any]:
     """The name and numbers of a rule of the core, or the numbers that a function is given.
 
     Raises:
-        ConfigError: There is no such rule.
+        ConfigError: There is no such rule, or a number of it is not finite.
     """
     if is_own(rule):
         return dict(json.loads(_core.rule_json()))
-    if isinstance(rule, str):
+    if isinstance(rule, str) and rule in RULES:
         return dict(json.loads(_core.rule_json(rule)))
     if isinstance(rule, CovarianceRule | HebbRule | OjaRule):
-        return {"name": rule.name, **asdict(rule)}
+        return {"name": rule.name, **plain(asdict(rule), "rule")}
     raise ConfigError(
-        f"rule = {rule!r} is not a function, a rule of gym_babble.brain, or one of "
+        f"rule = {shown(rule)} is not a function, a rule of gym_babble.brain, or one of "
         f"{', '.join(RULES)}"
     )
 
@@ -375,9 +418,45 @@ def _check_change(change: NDArray[Any], w: Floats) -> None:
         raise ConfigError(f"rule: Δw[{j}, {i}] = {change[j, i]} is not finite")
 
 
-def _each(function: Callable[[Any], NDArray[T]], values: ArrayLike, kind: Any) -> NDArray[T]:
-    """Applies a function that takes a batch to one value or to a batch."""
-    array = np.asarray(values, kind)
-    found = function(np.ascontiguousarray(np.atleast_2d(array)))
-    row: NDArray[T] = found if array.ndim > 1 else found[0]
+def _counts(neurons: Any, axes: int) -> list[int]:
+    """Neurons along each axis."""
+    given = neurons.tolist() if isinstance(neurons, np.ndarray) else neurons
+    if isinstance(given, list | tuple):
+        return [check_whole(f"neurons[{i}]", n, 2, 1024, "neurons") for i, n in enumerate(given)]
+    return [check_whole("neurons", given, 2, 1024, "neurons")] * axes
+
+
+def _axes(name: str, ends: Any) -> list[float]:
+    """One end of each axis."""
+    array = np.atleast_1d(numbers(name, ends))
+    if array.ndim > 1:
+        raise ConfigError(f"{name} has shape {array.shape}, expected (d,)")
+    found: list[float] = array.tolist()
+    return found
+
+
+def _rows(name: str, values: Any, kind: Any) -> NDArray[Any]:
+    """One row of numbers, or several, as rows (n, k)."""
+    array = np.atleast_2d(numbers(name, values, kind))
+    if array.ndim > 2:
+        raise ConfigError(f"{name} has shape {array.shape}, expected (k,) or (n, k)")
+    return np.ascontiguousarray(array)
+
+
+def _each(
+    function: Callable[[Any], NDArray[T]], name: str, values: Any, kind: Any, *, width: int = 1
+) -> NDArray[T]:
+    """Applies a function that takes a batch to one value or to a batch.
+
+    Raises:
+        ConfigError: The values are not finite numbers, or their results, `width` numbers each,
+            would fill the memory.
+    """
+    rows = _rows(name, values, kind)
+    if len(rows) * width > MOST_ACTIVITIES:
+        raise ConfigError(
+            f"{name} has {len(rows)} rows, at most {MOST_ACTIVITIES // width} at once"
+        )
+    found = function(rows)
+    row: NDArray[T] = found if np.ndim(values) > 1 else found[0]
     return row

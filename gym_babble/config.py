@@ -15,11 +15,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass
 from pathlib import Path
 from typing import Any, TypeAlias, get_type_hints
 
 from gym_babble import _core
+from gym_babble.checks import check_choice, check_path, check_text, plain, shown
 from gym_babble.errors import ConfigError
 
 __all__ = [
@@ -330,25 +331,27 @@ class Config:
         Raises:
             ConfigError: There is no profile of that name.
         """
-        return cls.from_json(_core.profile_config(name))
+        return cls.from_json(_core.profile_config(check_choice("name", name, _core.profiles())))
 
     @classmethod
     def load(cls, path: str | Path) -> Config:
         """A config from a TOML or JSON file that holds what differs from its profile.
 
         Raises:
-            ConfigError: The file cannot be read, or a field is unknown or out of bounds.
+            ConfigError: The file cannot be read, is no text or larger than a megabyte, or a field
+                is unknown, given twice or out of bounds.
         """
-        return cls.from_json(_core.load_config(path))
+        return cls.from_json(_core.load_config(check_path("path", path)))
 
     @classmethod
     def from_json(cls, text: str) -> Config:
         """A config from JSON that holds what differs from its profile.
 
         Raises:
-            ConfigError: A field is unknown or out of bounds.
+            ConfigError: A field is unknown, given twice or out of bounds.
         """
-        config: Config = _build(cls, json.loads(_core.complete_config(text)))
+        text = _core.complete_config(check_text("text", text))
+        config: Config = _build(cls, json.loads(text))
         return config
 
     @property
@@ -359,8 +362,12 @@ class Config:
         return round((reach.movement_s + settle_s) / reach.control_period_s)
 
     def to_json(self) -> str:
-        """The whole config as JSON."""
-        return json.dumps(asdict(self))
+        """The whole config as JSON.
+
+        Raises:
+            ConfigError: A field is not a number, a text or a list of these, or not finite.
+        """
+        return json.dumps(plain(self, "", kind="config: "))
 
 
 ConfigLike: TypeAlias = "str | Path | Mapping[str, Any] | Config"
@@ -374,16 +381,19 @@ def config_json(config: ConfigLike) -> str:
         ConfigError: A name, field or value is not one there is.
     """
     if isinstance(config, Config | Mapping):
-        try:
-            text = config.to_json() if isinstance(config, Config) else json.dumps(dict(config))
-        except (TypeError, ValueError) as error:
-            raise ConfigError(f"config: {error}") from error
-        return _core.complete_config(text)
+        return _core.complete_config(json.dumps(plain(config, "", kind="config: ")))
     if isinstance(config, Path):
-        return _core.load_config(config)
+        return _core.load_config(check_path("config", config))
     if isinstance(config, str):
-        is_file = config.endswith((".toml", ".json"))
-        return _core.load_config(config) if is_file else _core.profile_config(config)
+        if config.endswith((".toml", ".json")):
+            return _core.load_config(check_path("config", config))
+        profiles = _core.profiles()
+        if config in profiles:
+            return _core.profile_config(config)
+        raise ConfigError(
+            f"config = {shown(config)} is not one of {', '.join(profiles)}, and not a file that "
+            "ends in .toml or .json"
+        )
     raise ConfigError(
         f"config is a {type(config).__name__}, not a profile's name, a path, a dict or a Config"
     )

@@ -57,7 +57,18 @@ OF_ONE_TASK = re.compile(
 
 # The packages and modules of gym_babble: each may import those before it.
 LAYERS = (
-    *("errors", "config", "progress", "files", "envs", "brain", "agents", "export", "sb3"),
+    *(
+        "errors",
+        "checks",
+        "config",
+        "progress",
+        "files",
+        "envs",
+        "brain",
+        "agents",
+        "export",
+        "sb3",
+    ),
     *("study", "viz", "paper", "report", "cli"),
 )
 

@@ -413,9 +413,11 @@ def test_doctor(run, run_json):
     found = run_json("doctor")
     assert found["same_bits"]
     assert found["build"] == "release"
+    assert found["unconverged_steps"] == 0
     code, printed, _ = run("doctor")
     assert code == 0
     assert "correct" in printed
+    assert "0 of 12,800 physics steps" in printed
 
 
 @pytest.mark.parametrize(

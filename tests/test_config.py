@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+import re
+import time
 from dataclasses import asdict, fields, is_dataclass, replace
 
+import numpy as np
 import pytest
 
-from gym_babble import Config, _core, scenarios
+from gym_babble import Config, HebbBabbling, _core, scenarios
 from gym_babble.config import (
     Arm,
     Cylinder,
@@ -257,13 +260,21 @@ OUT_OF_BOUNDS = [
     ({"body": {"eye": {"frame": "listing"}}}, "frame"),
     ({"body": {"eye": {"pan_deg": [10, -10]}}}, "pan_deg"),
     ({"body": {"obstacle": {"radius_m": 0}}}, "radius_m"),
-    ({"body": {"target": {"radius_m": float("nan")}}}, None),
+    ({"body": {"target": {"radius_m": float("nan")}}}, "body.target.radius_m: nan is not finite"),
+    ({"body": {"target": {"radius_m": np.float32("inf")}}}, "body.target.radius_m: inf is not"),
+    ({"body": {"arm": {"forearm_m": 10**400}}}, "body.arm.forearm_m: 10+ .*2.63"),
+    ({"body": {"arm": {"forearm_m": b"0.1"}}}, "body.arm.forearm_m: b'0.1' is not"),
+    ({"body": {"arm": {"forearm_m": object()}}}, "body.arm.forearm_m: <object"),
+    ({"body": {"hand": {"finger_m": (0.01, np.nan, 0.01, 0.01)}}}, r"body.hand.finger_m\[1\]: nan"),
+    ({"body": {"arm": {3: 0.1}}}, "body.arm: 3 is not the name"),
+    ({"grasp": {"diameters_m": [0.03] * 1001}}, "grasp.diameters_m: 1001 items"),
+    ({"grasp": {"diameters_m": np.zeros(10**7)}}, "grasp.diameters_m: 10000000 items"),
     ({"body": {"target": {"radius_m": None}}}, "radius_m"),
     ({"reach": {"distance_m": [0.2, 0.1]}}, "distance_m"),
     ({"reach": {"b_range": [0, 1]}}, "b_range"),
     ({"reach": {"physics_steps": 0}}, "physics_steps"),
     ({"reach": {"physics_steps": 2.5}}, "physics_steps"),
-    ({"reach": {"control_period_s": float("inf")}}, None),
+    ({"reach": {"control_period_s": float("inf")}}, "reach.control_period_s: inf is not finite"),
     ({"reach": {"success_radius_m": 0.5}}, "success_radius_m"),
     ({"reach": []}, "reach"),
     ({"grasp": []}, "grasp"),
@@ -292,7 +303,9 @@ OUT_OF_BOUNDS = [
     ({"body": "big"}, "body"),
     ({"profile": "giant"}, "giant"),
     ({"profile": 3}, "profile"),
-    ({"body": {1, 2}}, None),
+    ({"body": {1, 2}}, r"body: \{1, 2\} is not a number"),
+    ({"reach": {"physics_steps": np.True_}}, "reach.physics_steps"),
+    ({"reach": {"movement_s": np.zeros(2, "datetime64[s]")}}, "reach.movement_s: .*datetime64"),
 ]
 
 
@@ -322,6 +335,45 @@ def test_a_dataclass_with_wrong_values_is_refused():
             BabbleReachEnv(config=broken)
 
 
+def test_numpys_numbers_are_numbers():
+    given = {
+        "reach": {
+            "movement_s": np.float32(5),
+            "physics_steps": np.int64(5),
+            "distance_m": np.array([0.1, 0.2]),
+        },
+        "grasp": {"any_diameter_between": np.True_, "hold_steps": np.uint8(9)},
+        "body": {"muscles": {"kp": np.array(45)}},
+    }
+    plain = {
+        "reach": {"movement_s": 5.0, "physics_steps": 5, "distance_m": [0.1, 0.2]},
+        "grasp": {"any_diameter_between": True, "hold_steps": 9},
+        "body": {"muscles": {"kp": 45}},
+    }
+    assert config_json(given) == config_json(plain)
+    changed = replace(Config(), reach=replace(Config().reach, movement_s=np.float32(5)))
+    assert json.loads(config_json(changed))["reach"]["movement_s"] == 5
+
+
+def test_deep_dicts_and_circles_are_refused_by_their_field():
+    deep: dict = {}
+    inner = deep
+    for _ in range(3000):
+        inner["reach"] = {}
+        inner = inner["reach"]
+    circle: dict = {}
+    circle["body"] = [circle]
+    for config, field in ((deep, "reach.reach"), (circle, r"body\[0\].body")):
+        with pytest.raises(ConfigError, match=f"{field}.*nested in more than 16 levels"):
+            config_json(config)
+
+
+def test_a_config_of_numbers_that_are_not_finite_is_not_written():
+    config = replace(Config(), reach=replace(Config().reach, movement_s=float("nan")))
+    with pytest.raises(ConfigError, match=r"reach.movement_s: nan is not finite"):
+        config.to_json()
+
+
 def test_broken_files_are_refused_by_their_path(tmp_path):
     for name, content in (
         ("cut.json", b'{"profile": "pap'),
@@ -330,6 +382,12 @@ def test_broken_files_are_refused_by_their_path(tmp_path):
         ("bytes.toml", b"\xff\xfe\x00"),
         ("unknown.toml", b"[reach]\nspeed = 1\n"),
         ("body.yaml", b"profile: paper"),
+        ("twice.json", b'{"reach": {"movement_s": 5.0, "movement_s": 6.0}}'),
+        ("nan.toml", b"[reach]\nmovement_s = nan"),
+        ("far.json", b'{"reach": {"movement_s": 1e400}}'),
+        ("deep.json", b"[" * 100_000),
+        ("huge.json", b" " * 2**21),
+        ("picture.toml", b"\x89PNG\r\n\x1a\n"),
     ):
         path = tmp_path / name
         path.write_bytes(content)
@@ -337,6 +395,11 @@ def test_broken_files_are_refused_by_their_path(tmp_path):
             BabbleReachEnv(config=path)
     with pytest.raises(ConfigError, match="missing"):
         BabbleReachEnv(config="missing.toml")
+    with pytest.raises(ConfigError, match=r"'body.yaml' is not one of paper, icub, and not a file"):
+        BabbleReachEnv(config="body.yaml")
+    marked = tmp_path / "marked.json"
+    marked.write_text('{"profile": "icub"}', encoding="utf-8-sig")
+    assert Config.load(marked) == Config.profile_named("icub")
     with pytest.raises(ConfigError):
         BabbleReachEnv(config=tmp_path)
 
@@ -357,6 +420,66 @@ def test_a_config_with_no_room_for_a_case_says_so():
         env.reset(seed=0)
     with pytest.raises(BabbleError, match="no legal movement"):
         scenarios("table1", 1, config=config)
+
+
+# Bodies with which nothing can be done: there is no case, or no movement is legal, or the
+# hand keeps no object.
+HOPELESS = {
+    "no joint range": {
+        "body": {
+            "joints": {
+                "shoulder": {"lower_deg": 0, "upper_deg": 2},
+                "elbow": {"lower_deg": 10, "upper_deg": 12},
+            }
+        }
+    },
+    "a thick arm": {"body": {"arm": {"half_width_m": 0.05}, "obstacle": {"radius_m": 0.05}}},
+    "straight movements": {
+        "body": {"obstacle": {"radius_m": 0.03}},
+        "reach": {"b_range": [0.4999, 0.5001]},
+    },
+}
+PROMPTLY_S = 2.0
+"""Processor time until a hopeless body says so."""
+
+
+def promptly(call, named):
+    """Its error tells what was tried, within a few seconds."""
+    began = time.process_time()
+    with pytest.raises(BabbleError, match=named) as caught:
+        call()
+    assert time.process_time() - began < PROMPTLY_S
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("name", HOPELESS)
+def test_a_hopeless_body_says_so_in_seconds(name):
+    config = HOPELESS[name]
+    for control in ("delta_posture", "pattern"):
+        env = BabbleReachEnv(config=config, control=control)
+        said = promptly(lambda env=env: env.reset(seed=0), "no legal movement: of")
+        drawn, played = map(int, re.findall(r"of (\d+) random .* ends of (\d+)", said)[0])
+        assert drawn > 0
+        assert drawn == 1_000_000 or played > 0
+    promptly(lambda: scenarios("table1", 2, config=config), "no legal movement: of")
+    env = BabbleReachEnv(config=config, control="pattern")
+    for fast in (True, False):
+        agent = HebbBabbling(env, quasi_static=fast, threads=1)
+        promptly(lambda agent=agent: agent.learn(10), "no legal movement|only 0 of")
+        assert (agent.babbled, agent.learnt) == (0, 0)
+
+
+def test_a_hopeless_hand_says_so_in_seconds():
+    # Balls that slip out of the hand.
+    slippery = {"body": {"object": {"friction": 0.0, "support_friction": 0.0}}}
+    crossed = {"body": {"grip": {"reflex_deg": [0.0, 1.0]}}}
+    for config in (slippery, crossed):
+        agent = HebbBabbling(BabbleGraspEnv(config=config), threads=1)
+        promptly(lambda agent=agent: agent.learn(10), "only 0 of 5.. babbles")
+    region = {"radius_m": [0.01, 0.011], "polar_deg": [-5, 5]}
+    nowhere = {"grasp": {"palm_side": region, "full": region}}
+    for protocol in ("palm_side", "full"):
+        promptly(lambda p=protocol: scenarios(p, 2, config=nowhere), "no case in 10000 tries")
 
 
 def test_a_config_with_no_room_for_a_grasp_says_so():

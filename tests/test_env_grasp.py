@@ -13,7 +13,7 @@ from grasping import OPEN, at, grasp, posture, to_object
 
 from gym_babble import _core
 from gym_babble.config import Config
-from gym_babble.envs import BabbleGraspEnv, BabbleGraspVectorEnv
+from gym_babble.envs import BabbleGraspEnv, BabbleGraspVectorEnv, BabbleReachEnv
 from gym_babble.envs.interface import outcome_of
 from gym_babble.errors import ScenarioError
 
@@ -633,3 +633,14 @@ def test_random_play_keeps_what_has_been_true():
             if len(b) == 5:
                 for fact in ("ever_success", "reach", "palm_reach"):
                     assert b[4][fact] or not a[-1][fact]
+
+
+def test_steps_that_the_solver_did_not_converge_in_are_counted():
+    # In Rust a test shows steps that are.
+    env = BabbleGraspEnv(control="posture")
+    env.reset(seed=0)
+    for _ in range(20):
+        env.step([0.5, -0.5, 0.9, 0.9])
+    assert env.interface.unconverged_steps == 0
+    assert BabbleGraspEnv(config={"body": {"engine": "rapier"}}).interface.unconverged_steps is None
+    assert BabbleReachEnv().interface.unconverged_steps is None

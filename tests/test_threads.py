@@ -241,6 +241,29 @@ def test_after_an_interrupted_reset_those_that_it_chose_need_another():
         envs.step(still(envs))
 
 
+# An arm so thick that no movement is legal, and movements that take long to try.
+HOPELESS = {
+    "body": {"arm": {"half_width_m": 0.05}, "obstacle": {"radius_m": 0.05}},
+    "reach": {"control_period_s": 0.001, "movement_s": 60.0},
+}
+
+
+@pytest.mark.parametrize("n", [0, 1, 3], ids=["single", "batch of one", "batch"])
+def test_a_reset_that_searches_long_is_interrupted(n, capsys):
+    env = BabbleReachVectorEnv(n, config=HOPELESS) if n else BabbleReachEnv(config=HOPELESS)
+    with alarm_after(0.1) as heard:
+        with pytest.raises(AlarmError):
+            env.reset(seed=0)
+        ended = time.perf_counter()
+    with capsys.disabled():
+        print(f"\nreset ended {1e3 * (ended - heard[0]):.0f} ms after the alarm was heard", end=" ")
+    assert ended - heard[0] < BOUND_S
+    # Afterwards it can be used as before.
+    case = {"start": (0.1, 0.2), "target": (0.2, 0.25), "obstacle": None}
+    env.reset(options=case)
+    env.step(np.zeros(env.action_space.shape, np.float32))
+
+
 @pytest.mark.parametrize("rule", ["covariance", slow_rule])
 @each_task
 def test_interrupted_learning_is_as_after_its_last_whole_chunk(task, rule):

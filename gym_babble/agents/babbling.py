@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from gym_babble import _core
-from gym_babble.agents.base import interface_of, processors
-from gym_babble.envs.interface import check_seed, check_whole
+from gym_babble.agents.base import interface_of
+from gym_babble.checks import check_flag, check_number, check_seed, check_threads, check_whole
 
 if TYPE_CHECKING:
     import numpy as np
@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from gym_babble.envs.interface import Interface
 
 __all__ = ["Experiences", "babble", "experiences_of"]
+
+MOST_BABBLES = 1_000_000
+"""Babbles whose experiences are kept at once."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,11 +92,12 @@ def babble(
         ConfigError: An argument is out of its bounds, or `env` is not an environment of this
             package.
     """
-    check_seed(seed)
-    check_whole("n", n, 1, 100_000_000, "babbles")
-    options = json.dumps({"quasi_static": True} if quasi_static else None)
-    interface = interface_of(env)
-    period_s, threads = learning_period_s, processors(threads)
+    n, seed = check_whole("n", n, 1, MOST_BABBLES, "babbles"), check_seed(seed)
+    fast, threads = check_flag("quasi_static", quasi_static), check_threads(threads)
+    options = json.dumps({"quasi_static": True} if fast else None)
+    interface, period_s = interface_of(env), learning_period_s
+    if period_s is not None:
+        period_s = check_number("learning_period_s", period_s, 0.0, 1_000.0, "s")
     return experiences_of(interface, n, seed, options, period_s=period_s, threads=threads)
 
 

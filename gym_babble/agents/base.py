@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import inspect
-import os
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeVar, runtime_checkable
 
 import gymnasium
 import numpy as np
 from gymnasium.vector import VectorEnv
 
+from gym_babble import _core
+from gym_babble.checks import shown
 from gym_babble.envs.interface import Interface
 from gym_babble.errors import ConfigError
 
@@ -27,7 +28,6 @@ __all__ = [
     "Planner",
     "interface_of",
     "predictor",
-    "processors",
 ]
 
 EnvLike: TypeAlias = Any
@@ -125,7 +125,10 @@ def interface_of(env: EnvLike) -> Interface:
         ConfigError: It is not an environment of this package.
     """
     if isinstance(env, str):
-        env = gymnasium.make(env)
+        try:
+            env = gymnasium.make(env)
+        except gymnasium.error.Error as error:
+            raise ConfigError(f"env = {shown(env)} is not a registered environment") from error
     if isinstance(env, gymnasium.Env | VectorEnv):
         found = getattr(env.unwrapped, "interface", None)
     elif hasattr(env, "get_attr"):
@@ -133,7 +136,7 @@ def interface_of(env: EnvLike) -> Interface:
     else:
         found = getattr(env, "interface", None)
     if not isinstance(found, Interface):
-        raise ConfigError(f"{env!r} is not a Babble environment")
+        raise ConfigError(f"{shown(env)} is not a Babble environment")
     return found
 
 
@@ -177,8 +180,9 @@ class Planner:
         del deterministic
         senses = self._senses(observation)
         batch = np.atleast_2d(senses)
-        starts = np.zeros(len(batch), np.bool_) if episode_start is None else episode_start
-        starts = np.broadcast_to(np.asarray(starts, np.bool_), len(batch)).tolist()
+        if state is not None and not isinstance(state, _core.Plans):
+            raise ConfigError(f"state = {shown(state)} is not what predict returned")
+        starts = _starts(episode_start, len(batch))
         actions, state = self._core.predict(self._interface.task, batch, starts, state)
         return (actions if senses.ndim > 1 else actions[0]), state
 
@@ -188,11 +192,11 @@ class Planner:
         A dict need not have what its task's networks do not look at.
         """
         if not isinstance(observation, dict):
-            return np.ascontiguousarray(observation, np.float32)
+            return _array(observation)
         if "observation" in observation:
-            return np.ascontiguousarray(observation["observation"], np.float32)
+            return _array(observation["observation"])
         slices = self._interface.spec.slices
-        known = {name: np.asarray(observation[name]) for name, _ in slices if name in observation}
+        known = {name: _array(observation[name]) for name, _ in slices if name in observation}
         if not known:
             raise ConfigError(
                 f"observation has {', '.join(map(str, observation))}, expected "
@@ -202,6 +206,11 @@ class Planner:
         senses = np.zeros((*shape, slices[-1][1].stop), np.float32)
         for name, part in slices:
             if name in known:
+                expected = (*shape, part.stop - part.start)
+                if known[name].shape != expected:
+                    raise ConfigError(
+                        f"observation[{name!r}] has shape {known[name].shape}, expected {expected}"
+                    )
                 senses[..., part] = known[name]
         return senses
 
@@ -212,6 +221,34 @@ class Planner:
         self.__dict__.update(state)
 
 
-def processors(threads: int | None) -> int:
-    """A number of threads; all processors if not given."""
-    return threads if threads is not None else (os.cpu_count() or 1)
+def _array(observation: Any) -> NDArray[np.float32]:
+    """Senses (m,) or (n, m) as an array.
+
+    Raises:
+        ConfigError: They are not numbers, or have another shape.
+    """
+    try:
+        array = np.ascontiguousarray(observation, np.float32)
+    except (OverflowError, TypeError, ValueError) as error:
+        raise ConfigError(f"observation = {shown(observation)}: {error}") from error
+    if array.ndim > 2:
+        raise ConfigError(f"observation has shape {array.shape}, expected (m,) or (n, m)")
+    return array
+
+
+def _starts(given: Any, n: int) -> list[bool]:
+    """Which of n environments have begun a new episode; none unless given.
+
+    Raises:
+        ConfigError: It is not one truth value, or one for each environment.
+    """
+    if given is None:
+        return [False] * n
+    try:
+        starts = np.broadcast_to(np.asarray(given), n)
+    except ValueError as error:
+        raise ConfigError(f"episode_start = {shown(given)}: expected {n} truth values") from error
+    if starts.dtype.kind not in "biuf":
+        raise ConfigError(f"episode_start = {shown(given)}: expected {n} truth values")
+    found: list[bool] = starts.astype(np.bool_).tolist()
+    return found

@@ -3,23 +3,35 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gym_babble import _core
 from gym_babble.agents.babbling import experiences_of
-from gym_babble.agents.base import Planner, interface_of, processors
+from gym_babble.agents.base import Planner, interface_of
 from gym_babble.brain import is_own, rule_numbers, teach
-from gym_babble.envs.interface import Interface, check_seed, check_whole
+from gym_babble.checks import (
+    check_choice,
+    check_flag,
+    check_path,
+    check_seed,
+    check_threads,
+    check_whole,
+    plain,
+    shaped,
+    shown,
+)
+from gym_babble.envs.interface import Interface
 from gym_babble.envs.registry import task_entry
 from gym_babble.errors import AgentFileError, ConfigError
 from gym_babble.files import write_file
 from gym_babble.progress import track
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
+    from pathlib import Path
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -32,6 +44,8 @@ __all__ = ["VARIANTS", "HebbBabbling"]
 VARIANTS = ("paper", "conjunctive")
 # How many babbles the paper's agent of a task learns from, and how many it learns from together.
 PAPER = {"reach": (20_000, 250), "grasp": (1_000, 50)}
+# The most that it learns from together, so that their experiences fit into memory.
+MOST_TOGETHER = 100_000
 # The environment that an agent from a file acts in, by its task.
 ACTS_IN = {"reach": {"control": "pattern", "reward": "sparse"}, "grasp": {}}
 
@@ -80,15 +94,14 @@ class HebbBabbling(Planner):
         brain: Mapping[str, Any] | None = None,
     ) -> None:
         super().__init__(env)
-        check_seed(seed)
+        seed, self._threads = check_seed(seed), check_threads(threads)
         task = self._interface.entry.name
-        numbers = json.loads(_core.brain_json(task, variant))
+        numbers = json.loads(_core.brain_json(task, check_choice("variant", variant, VARIANTS)))
         if rule is not None:
             numbers["rule"] = rule_numbers(rule)
-        _merge(numbers, brain or {}, "brain")
+        _merge(numbers, _changes(brain), "brain")
         self._rule: OwnRule | None = rule if is_own(rule) else None  # type: ignore[assignment]
-        self._threads = processors(threads)
-        babbling = {"quasi_static": True} if quasi_static else None
+        babbling = {"quasi_static": True} if check_flag("quasi_static", quasi_static) else None
         self._core = _core.Learner(
             self._interface.task, json.dumps(numbers), seed, json.dumps(babbling), self._threads
         )
@@ -129,14 +142,15 @@ class HebbBabbling(Planner):
         paper, every = PAPER[self._interface.entry.name]
         babbles = paper if babbles is None else babbles
         every = every if callback_every is None else callback_every
-        check_whole("babbles", babbles, 0, 100_000_000, "babbles")
-        check_whole("callback_every", every, 1, 100_000_000, "babbles")
+        babbles = check_whole("babbles", babbles, 0, 100_000_000, "babbles")
+        every = check_whole("callback_every", every, 1, MOST_TOGETHER, "babbles")
+        show = check_flag("progress_bar", progress_bar)
+        if callback is not None and not callable(callback):
+            raise ConfigError(f"callback = {shown(callback)} is not a function")
         rule = None if self._rule is None else teach(self._rule, self.brain["rule"])
-        chunks = [every] * (babbles // every)
-        if babbles % every:
-            chunks.append(babbles % every)
+        chunks = (min(every, babbles - done) for done in range(0, babbles, every))
         with self._core:
-            for chunk in track(chunks, "babbling", total=babbles, show=progress_bar):
+            for chunk in track(chunks, "babbling", total=babbles, show=show):
                 self._core.learn(self._interface.task, chunk, rule)
                 go_on = None if callback is None else callback(self)
                 if go_on is not None and not go_on:
@@ -206,13 +220,14 @@ class HebbBabbling(Planner):
             AgentFileError: The file is cut short, altered, or not an agent.
             ConfigError: It cannot act in the environment, or learnt by a rule of the core.
         """
+        data = check_path("path", path).read_bytes()
         try:
-            core = _core.Learner.load(Path(path).read_bytes(), processors(threads))
+            core = _core.Learner.load(data, check_threads(threads))
         except ValueError as error:
             raise AgentFileError(f"{path}: {error}") from error
         _check_own(rule, json.loads(core.brain())["rule"]["name"])
         agent = cls.__new__(cls)
-        agent._threads, agent._rule = processors(threads), rule  # noqa: SLF001 - its own
+        agent._threads, agent._rule = check_threads(threads), rule  # noqa: SLF001 - its own
         agent._core = core  # noqa: SLF001 - its own
         if env is None:
             agent._interface = _interface_where(core)  # noqa: SLF001 - its own
@@ -248,10 +263,16 @@ class HebbBabbling(Planner):
     @weights.setter
     def weights(self, weights: Mapping[str, ArrayLike]) -> None:
         known = self.weights
+        if not isinstance(weights, Mapping):
+            raise ConfigError(f"weights = {shown(weights)} is not a dict")
         unknown = set(weights) - set(known)
         if unknown:
-            raise ConfigError(f"weights: {sorted(unknown)} unknown; there are {', '.join(known)}")
-        parts = {name: np.asarray(weights.get(name, known[name]), np.float32) for name in known}
+            raise ConfigError(
+                f"weights: {sorted(map(str, unknown))} unknown; there are {', '.join(known)}"
+            )
+        parts = {
+            name: shaped(name, weights.get(name, old), old.shape) for name, old in known.items()
+        }
         self._core.set(
             [
                 (parts[f"{prefix}weights"], parts[f"{prefix}a_mean"], parts[f"{prefix}g_mean"])
@@ -338,6 +359,19 @@ def _check_own(rule: Any, name: str) -> None:
         raise ConfigError(f"rule: the agent learnt by {name!r}, and not by a rule of your own")
 
 
+def _changes(brain: Any) -> dict[str, Any]:
+    """Numbers of a brain that a user changes, as JSON has them.
+
+    Raises:
+        ConfigError: It is not a dict, or a number is not finite.
+    """
+    if brain is None:
+        return {}
+    if not isinstance(brain, Mapping):
+        raise ConfigError(f"brain = {shown(brain)} is not a dict")
+    return dict(plain(brain, "brain"))
+
+
 def _merge(numbers: dict[str, Any], changes: Mapping[str, Any], path: str) -> None:
     """Replaces numbers of a brain.
 
@@ -347,7 +381,7 @@ def _merge(numbers: dict[str, Any], changes: Mapping[str, Any], path: str) -> No
     for name, value in changes.items():
         if name not in numbers:
             raise ConfigError(f"{path}.{name}: unknown field; there are {', '.join(numbers)}")
-        if isinstance(numbers[name], dict) and hasattr(value, "items"):
+        if isinstance(numbers[name], dict) and isinstance(value, dict):
             _merge(numbers[name], value, f"{path}.{name}")
         else:
             numbers[name] = value

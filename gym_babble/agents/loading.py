@@ -99,9 +99,10 @@ def named_agent(
     """An agent by name, from a file, or your own.
 
     Args:
-        name: "random", "scripted" or "oracle"; a file that `HebbBabbling.save` wrote; a zip that
-            stable-baselines3 wrote, which holds pickled Python: load only those you trust; or
-            "module:Class", a class of your own, found from the current folder (see `own_agent`).
+        name: "random", "scripted" or "oracle"; a file that `HebbBabbling.save` wrote ("./random" if
+            it is called like one of these agents); a zip that stable-baselines3 wrote, which holds
+            pickled Python: load only those you trust; or "module:Class", a class of your own, found
+            from the current folder (see `own_agent`).
         env_id: Environment to act in. If not given, BabbleReachPattern-v0, or BabbleGrasp-v0 for an
             agent that has learnt to grasp. A class of your own needs it unless it has an attribute
             `env`; a zip needs it, and the option `control`, unless `train_ppo` trained the model.

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gym_babble import _core
-from gym_babble.agents.base import Planner, processors
-from gym_babble.envs.interface import check_seed
+from gym_babble.agents.base import Planner
+from gym_babble.checks import check_seed, check_threads
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -29,9 +29,8 @@ class _Reference(Planner):
 
     def __init__(self, env: EnvLike, *, seed: int = 0, threads: int | None = 1) -> None:
         super().__init__(env)
-        check_seed(seed)
-        self._seed, self._threads = seed, processors(threads)
-        self._core = _core.Reference(self._name, seed, 0, self._threads)
+        self._seed, self._threads = check_seed(seed), check_threads(threads)
+        self._core = _core.Reference(self._name, self._seed, 0, self._threads)
         self._core.check(self._interface.task)
 
     def decide(self, observation: Observation) -> NDArray[np.float64]:
@@ -66,7 +65,8 @@ class Random(_Reference):
         seed: Seed of its choices; a different one each time if None.
 
     Raises:
-        ConfigError: It is not an environment of this package, or one in which it cannot act.
+        ConfigError: An argument is out of its bounds, or it is not an environment of this package,
+            or one in which it cannot act.
     """
 
     _name = "random"
@@ -108,7 +108,8 @@ class Oracle(_Reference):
         threads: Threads that simulate; all processors if None. Its choices do not depend on it.
 
     Raises:
-        ConfigError: It is not an environment of this package, or one in which it cannot act.
+        ConfigError: An argument is out of its bounds, or it is not an environment of this package,
+            or one in which it cannot act.
     """
 
     _name = "oracle"

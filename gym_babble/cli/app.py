@@ -1,5 +1,6 @@
 """The application: its commands, and how it runs and fails."""
 
+import io
 import sys
 from collections.abc import Sequence
 from typing import Annotated, Any
@@ -52,6 +53,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     Args:
         arguments: Words after `gym-babble`; those of the process by default.
     """
+    for stream in (sys.stdout, sys.stderr):
+        # A pipe may not know all letters, as on Windows: better a "?" than no result.
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
     sys.exit(_run(arguments))
 
 
@@ -72,5 +77,5 @@ def _run(arguments: Sequence[str] | None) -> int:
 
 def _fail(text: str, code: int) -> int:
     # A library's message may have several lines; we print one.
-    typer.echo(f"error: {' '.join(text.split())}", err=True)
+    typer.echo(f"error: {' '.join(line.strip() for line in text.splitlines())}", err=True)
     return code

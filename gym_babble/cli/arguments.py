@@ -105,9 +105,9 @@ Agents = Annotated[
 AgentName = Annotated[
     str,
     typer.Argument(
-        help="random, scripted, oracle; a file written by `babble`; module:Class, an agent of your "
-        "own; or a zip of stable-baselines3 (which contains pickled Python: use only files you "
-        "trust)."
+        help="random, scripted, oracle; a file written by `babble` (./random if it is called like "
+        "an agent); module:Class, an agent of your own; or a zip of stable-baselines3 (which "
+        "contains pickled Python: use only files you trust)."
     ),
 ]
 Picture = Annotated[Path, typer.Option("--out", help="Picture: png, svg or pdf.")]

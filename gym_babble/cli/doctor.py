@@ -1,6 +1,5 @@
 """`gym-babble doctor`: what is installed, whether the core computes correctly, and how fast."""
 
-import os
 import platform
 from hashlib import blake2b
 from time import perf_counter
@@ -10,16 +9,21 @@ import gymnasium
 import numpy as np
 import typer
 from rich.table import Table
+from rich.text import Text
 
 from gym_babble._core import debug_build
+from gym_babble.checks import processors
 from gym_babble.cli.arguments import AsJson
 from gym_babble.cli.output import print_json, print_results
-from gym_babble.envs import BabbleGraspEnv, BabbleReachEnv
+from gym_babble.config import Config
+from gym_babble.envs import BabbleGraspEnv, BabbleGraspVectorEnv, BabbleReachEnv
 from gym_babble.study.tables import plain_table
 from gym_babble.study.versions import EXTRAS, versions
 
 __all__ = ["STATE_HASH", "doctor", "examine", "state_hash"]
 
+GRASP_STEPS = 20
+"""Steps of each random grasp."""
 STATE_HASH = 0xC374_6E59_3116_03F5
 """The value of `state_hash()` on every platform."""
 
@@ -46,10 +50,11 @@ def examine() -> dict[str, Any]:
         },
         "build": "debug" if debug_build else "release",
         "platform": f"{platform.system()} {platform.machine()}",
-        "threads": os.cpu_count() or 1,
+        "threads": processors(),
         "state_hash": f"{state:016x}",
         "state_hash_expected": f"{STATE_HASH:016x}",
         "same_bits": state == STATE_HASH,
+        "unconverged_steps": _unconverged(),
         "step_us": _time_single(),
         "step_in_batch_of_64_us": _time_batch(),
     }
@@ -66,6 +71,17 @@ def state_hash() -> int:
             env.step(action)
         digest.update(env.state_hash().to_bytes(8, "little"))
     return int.from_bytes(digest.digest(), "little")
+
+
+def _unconverged() -> int:
+    """Physics steps in which the solver of contacts did not converge, in 64 random grasps."""
+    envs = BabbleGraspVectorEnv(64, control="posture", enclosure_reflex=True)
+    envs.action_space.seed(0)
+    envs.reset(seed=0)
+    for _ in range(GRASP_STEPS):
+        envs.step(envs.action_space.sample())
+    envs.close()
+    return envs.interface.unconverged_steps or 0
 
 
 def _time_single(steps: int = 4_000) -> float:
@@ -100,20 +116,21 @@ def _table(found: dict[str, Any]) -> Table:
     """The findings of `examine` as a table."""
     table = plain_table(None, ["what", "found"], left=2)
     for name, version in found["versions"].items():
-        table.add_row(name, version or "[dim]not installed[/]")
+        table.add_row(name, version or Text("not installed", "dim"))
     for extra, installed in found["extras"].items():
         table.add_row(
-            f"extra {extra}", "yes" if installed else f"no: pip install 'gym-babble\\[{extra}]'"
+            f"extra {extra}", "yes" if installed else f"no: pip install 'gym-babble[{extra}]'"
         )
     for name in ("platform", "build", "threads"):
         table.add_row(name, str(found[name]))
     state = found["state_hash"]
-    verdict = f"{state}: correct"
+    verdict = Text(f"{state}: correct")
     if not found["same_bits"]:
-        verdict = (
-            f"[red]{state}, expected {found['state_hash_expected']}: run `make setup` to rebuild[/]"
-        )
+        expected = found["state_hash_expected"]
+        verdict = Text(f"{state}, expected {expected}: run `make setup` to rebuild", "red")
     table.add_row("state after 20 steps of seed 0", verdict)
+    physics = f"{64 * GRASP_STEPS * Config().grasp.physics_steps:,} physics steps of grasping"
+    table.add_row("contacts not solved", f"{found['unconverged_steps']} of {physics}")
     table.add_row("a step with gymnasium.make", f"{found['step_us']:.1f} µs")
     table.add_row("a step in a batch of 64", f"{found['step_in_batch_of_64_us']:.1f} µs")
     return table

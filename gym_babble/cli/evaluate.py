@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from gym_babble.agents.loading import named_agent
+from gym_babble.agents.loading import REFERENCES, named_agent
 from gym_babble.cli.arguments import (
     AgentName,
     AsJson,
@@ -61,8 +61,10 @@ def evaluate(
         return
     title = f"{cases:,} {TASKS[task.name].protocols[protocol].cases}, 95 % Wilson intervals"
     table = rates_table(title, task=task)
+    # A file may be called like an agent.
+    name = agent if Path(agent).name in REFERENCES else Path(agent).name
     for row in rate_rows([rates], [seed], task):
-        table.add_row(row.title or Path(agent).name, *rate_cells(row.rates, task))
+        table.add_row(row.title or name, *rate_cells(row.rates, task))
     if task.paper is not None:
         table.add_row("the paper", *rate_cells(paper_tally()))
     print_results(table)

@@ -6,7 +6,6 @@ from typing import Annotated, Any
 
 import gymnasium
 import typer
-from rich.markup import escape
 from rich.table import Table
 
 from gym_babble.cli.arguments import AsJson, ConfigName
@@ -65,13 +64,13 @@ def _registry_tables(task: registry.TaskEntry) -> list[Table]:
     options = plain_table("\noptions of make", ["name", "default", "meaning"], left=3)
     for option in task.options:
         default = "" if option.default is None else str(option.default)
-        options.add_row(option.name, default, escape(option.summary))
+        options.add_row(option.name, default, option.summary)
     parts = plain_table("\noptions of reset: parts of a case", ["name", "unit", "meaning"], left=3)
     for part in task.case_parts:
-        parts.add_row(part.name, part.unit, escape(part.doc))
+        parts.add_row(part.name, part.unit, part.doc)
     protocols = plain_table("\nprotocols: test cases", ["name", "meaning"], left=2)
     for protocol in task.protocols.values():
-        protocols.add_row(protocol.name, escape(protocol.doc))
+        protocols.add_row(protocol.name, protocol.doc)
     return [options, parts, protocols]
 
 
@@ -79,7 +78,7 @@ def _entries_table(title: str, entries: Sequence[dict[str, Any]]) -> Table:
     heads = ["name", "parts", "low", "high", "unit", "meaning"]
     table = plain_table(f"\n{title}", heads, left=len(heads))
     for entry in entries:
-        table.add_row(entry["name"], *_parts(entry), entry["unit"], escape(entry["description"]))
+        table.add_row(entry["name"], *_parts(entry), entry["unit"], entry["description"])
     return table
 
 

@@ -20,14 +20,15 @@ __all__ = [
     "write_table",
 ]
 
-results = Console()
-messages = Console(stderr=True)
+# A path or a name is shown as it is: square brackets are no markup in it, and `:x:` is no emoji.
+results = Console(markup=False, emoji=False, highlight=False)
+messages = Console(markup=False, emoji=False, highlight=False, stderr=True)
 
 
 def print_results(*parts: Any) -> None:
     """Prints tables or lines of text to stdout."""
     for part in parts:
-        results.print(part, highlight=False)
+        results.print(part, soft_wrap=isinstance(part, str))
 
 
 def print_json(document: Any) -> None:
@@ -37,7 +38,7 @@ def print_json(document: Any) -> None:
 
 def say(text: str) -> None:
     """Prints a message to stderr."""
-    messages.print(text, highlight=False, markup=False)
+    messages.print(text, soft_wrap=True)
 
 
 def name_files(files: list[Path]) -> None:

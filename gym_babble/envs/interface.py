@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gym_babble import _core
+from gym_babble.checks import numbers, plain, shown
 from gym_babble.config import ConfigLike, config_json
 from gym_babble.envs.labels import SCENARIO_LABELS, check_labels, config_label
 from gym_babble.envs.registry import TASKS, CasePart, task_entry
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
     from gym_babble.envs.registry import TaskEntry
 
-__all__ = ["RENDER_MODES", "Interface", "check_seed", "check_whole", "document", "outcome_of"]
+__all__ = ["RENDER_MODES", "Interface", "document", "outcome_of"]
 
 RENDER_MODES = ("human", "rgb_array", "rgb_array_list")
 
@@ -43,11 +44,11 @@ class Interface:
     ) -> None:
         self.entry = task_entry(task)
         if render_mode is not None and render_mode not in RENDER_MODES:
-            raise ConfigError(f"render_mode = {render_mode!r} is not one of {RENDER_MODES}")
-        given = dict(options)
+            raise ConfigError(f"render_mode = {shown(render_mode)} is not one of {RENDER_MODES}")
+        given = plain(options, "")
         if render_mode is not None:
             given["record"] = True
-        self.task = _core.Task(task, config_json(config), given)
+        self.task = _core.Task(task, config_json(config), json.dumps(given))
         self.render_mode = render_mode
         self._ignored: set[str] = set()
         self._given = deepcopy(given)
@@ -81,6 +82,15 @@ class Interface:
     def obs(self) -> str:
         """What an observation consists of."""
         return str(self.options["obs"])
+
+    @property
+    def unconverged_steps(self) -> int | None:
+        """Physics steps so far in which the solver of contacts did not converge.
+
+        Of all environments that share this interface, together. None where no solver tells: in
+        reaching, which needs none, and with the engine rapier.
+        """
+        return self.task.unconverged_steps()
 
     @property
     def retina_size(self) -> int:
@@ -166,14 +176,14 @@ class Interface:
         """Reward of the goal form for goals (k,) or (..., k), broadcast; `info` is not used.
 
         Raises:
-            ConfigError: The goals are not k numbers each, or their shapes do not fit.
+            ConfigError: The goals are not k finite numbers each, or their shapes do not fit.
         """
         del info
+        achieved = numbers("achieved_goal", achieved_goal, np.float32)
+        desired = numbers("desired_goal", desired_goal, np.float32)
         try:
-            achieved, desired = np.broadcast_arrays(
-                np.asarray(achieved_goal, np.float32), np.asarray(desired_goal, np.float32)
-            )
-        except (TypeError, ValueError) as error:
+            achieved, desired = np.broadcast_arrays(achieved, desired)
+        except ValueError as error:
             raise ConfigError(f"achieved_goal and desired_goal: {error}") from error
         width = len(self.spec.goals[0].labels)
         if achieved.shape[-1:] != (width,):
@@ -207,44 +217,26 @@ def outcome_of(info: Mapping[str, Any]) -> str:
     return next(name for name, is_so in outcome.items() if is_so)
 
 
-def check_whole(name: str, value: Any, low: int, high: int, unit: str) -> None:
-    """Raises `ConfigError` unless a value is a whole number within its bounds."""
-    whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
-    if not whole or not low <= value <= high:
-        raise ConfigError(f"{name} = {value!r} is not a whole number in [{low}, {high}] {unit}")
-
-
-def check_seed(seed: int) -> None:
-    """Raises `ConfigError` for a seed outside the core's range."""
-    if not 0 <= seed < 2**64:
-        raise ConfigError(f"seed = {seed} is not in [0, 2^64)")
-
-
 def _value(part: CasePart, value: Any) -> float | list[float] | None:
     """A part of a case as the core takes it; None is none.
 
     Raises:
-        ScenarioError: The value is not made of so many numbers.
+        ScenarioError: The value is not made of so many finite numbers.
     """
     if value is None:
         return None
-    name, unit = part.name, part.unit
-    if part.lengths == (0,):
-        try:
-            return float(value)
-        except (TypeError, ValueError) as error:
-            raise ScenarioError(f"{name} = {value!r} is not a number [{unit}]") from error
-    expected = " or ".join(map(str, part.lengths))
+    one = part.lengths == (0,)
+    expected = "a number" if one else f"{' or '.join(map(str, part.lengths))} numbers"
     try:
-        found = [float(x) for x in value]
-    except (TypeError, ValueError) as error:
+        array = numbers(part.name, value)
+    except ConfigError as error:
+        raise ScenarioError(f"{error}; expected {expected} [{part.unit}]") from error
+    if array.shape != () if one else (array.ndim != 1 or len(array) not in part.lengths):
         raise ScenarioError(
-            f"{name} = {value!r} is not made of {expected} numbers [{unit}]"
-        ) from error
-    if len(found) not in part.lengths:
-        raise ScenarioError(
-            f"{name} = {value!r} has {len(found)} numbers, expected {expected} [{unit}]"
+            f"{part.name} = {shown(value)} has shape {array.shape}, expected {expected} "
+            f"[{part.unit}]"
         )
+    found: float | list[float] = array.tolist()
     return found
 
 

@@ -24,7 +24,7 @@ def config_label(task: _core.Task, name: str) -> str:
     """A name for the config of the task of that name: its profile, with a hash if it differs."""
     found = task.config()
     profile = str(json.loads(found)["profile"])
-    if found == _core.Task(name, config_json(profile), {}).config():
+    if found == _core.Task(name, config_json(profile), "{}").config():
         return profile
     return f"{profile}, changed ({hashlib.sha256(found.encode()).hexdigest()[:8]})"
 

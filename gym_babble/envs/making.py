@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import json
 from typing import TYPE_CHECKING, Any
 
 from gymnasium.envs import registration
@@ -33,7 +34,7 @@ class Made:
     def spec(self, spec: EnvSpec | None) -> None:
         if spec is not None:
             if any(row.id == spec.id for row in ENVIRONMENTS):
-                _core.check_fixed(spec.id, self._interface.options)
+                _core.check_fixed(spec.id, json.dumps(self._interface.options))
             spec.max_episode_steps = self._max_episode_steps
         self._spec = spec
 

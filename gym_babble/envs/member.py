@@ -10,6 +10,7 @@ import gymnasium
 
 from gym_babble import _core
 from gym_babble.envs.spaces import need_reset
+from gym_babble.errors import SnapshotError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -54,6 +55,8 @@ class BatchMember:
         Raises:
             SnapshotError: The bytes are not such a state; the environment is as it was.
         """
+        if not isinstance(state, bytes):
+            raise SnapshotError(f"state is a {type(state).__name__}, expected bytes")
         self._batch.load(self._i, state)
         self._ended.clear()
         self._shown = self._batch.moments(self._i)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from gym_babble import _core
+from gym_babble.checks import check_choice, shown
 from gym_babble.errors import ConfigError
 
 __all__ = [
@@ -155,9 +156,7 @@ def task_entry(name: str) -> TaskEntry:
     Raises:
         ConfigError: There is no such task.
     """
-    if name not in TASKS:
-        raise ConfigError(f"task = {name!r} is not one of {', '.join(TASKS)}")
-    return TASKS[name]
+    return TASKS[check_choice("task", name, TASKS)]
 
 
 def environment(env_id: str) -> Environment:
@@ -170,4 +169,4 @@ def environment(env_id: str) -> Environment:
         if row.id == env_id:
             return row
     known = ", ".join(row.id for row in ENVIRONMENTS)
-    raise ConfigError(f"{env_id!r} is not an environment; there are {known}")
+    raise ConfigError(f"{shown(env_id)} is not an environment; there are {known}")

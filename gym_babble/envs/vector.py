@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -12,7 +11,8 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from gym_babble import _core
-from gym_babble.envs.interface import RENDER_MODES, Interface, check_whole, document
+from gym_babble.checks import check_threads, check_whole, processors, shown
+from gym_babble.envs.interface import RENDER_MODES, Interface, document
 from gym_babble.envs.making import Made
 from gym_babble.envs.member import BatchMember
 from gym_babble.envs.registry import task_entry
@@ -25,6 +25,10 @@ if TYPE_CHECKING:
     from gym_babble.config import ConfigLike
 
 __all__ = ["BabbleVectorEnv"]
+
+MOST_ENVS = 1_000_000
+MOST_IMAGE_BYTES = 2**32
+"""Size of the images of all environments together [byte]."""
 
 
 class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
@@ -87,13 +91,11 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
             task or self.task_name, config=config, render_mode=render_mode, options=options
         )
         self.render_mode = render_mode
-        check_whole("num_envs", num_envs, 1, 1_000_000, "environments")
-        self.num_envs = num_envs
+        self.num_envs = num_envs = check_whole("num_envs", num_envs, 1, MOST_ENVS, "environments")
         self.autoreset_mode = _autoreset_mode(autoreset_mode)
         if threads is None:
             threads = default_threads(num_envs, self._interface.entry.envs_per_thread)
-        check_whole("threads", threads, 1, 1024, "threads")
-        self._threads = threads
+        self._threads = check_threads(threads)
         self._make_core()
         interface = self._interface
         self.single_observation_space = interface.observation_space
@@ -110,6 +112,8 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
         self._own = frozenset(self.__dict__)
 
     def _make_core(self) -> None:
+        if self._interface.obs == "retina":
+            check_images(self.num_envs, self._interface.retina_size)
         self._batch = _core.Batch(
             self._interface.task,
             self.num_envs,
@@ -206,7 +210,10 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
         return mask, self._requests(others) if others else None
 
     def _reset_mask(self, given: Any) -> NDArray[np.bool_]:
-        mask = np.asarray(given)
+        try:
+            mask = np.asarray(given)
+        except ValueError as error:
+            raise ConfigError(f"options['reset_mask'] = {shown(given)}: {error}") from error
         if mask.shape != (self.num_envs,) or mask.dtype != np.bool_ or not mask.any():
             raise ConfigError(
                 f"options['reset_mask'] has shape {mask.shape}, dtype {mask.dtype} and "
@@ -221,7 +228,7 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
             super().reset(seed=int(seed))
             seeds: list[int | None] = [int(seed) + i for i in range(n)]
         else:
-            seeds = [None] * n if seed is None else list(seed)
+            seeds = [None] * n if seed is None else _listed(seed)
         if len(seeds) != n:
             raise ConfigError(f"seed has {len(seeds)} values, expected {n}")
         if not self._seeded:
@@ -411,8 +418,8 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
             ConfigError: The states are not as many as the environments.
             SnapshotError: Bytes are not such a state; all environments are as they were.
         """
-        if len(states) != self.num_envs:
-            raise ConfigError(f"{len(states)} states, expected {self.num_envs}")
+        if not isinstance(states, list | tuple) or len(states) != self.num_envs:
+            raise ConfigError(f"states = {shown(states)} is not a list of {self.num_envs} states")
         with self._batch:
             before = [member.freeze() for member in self._members]
             try:
@@ -439,11 +446,23 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
 
 def default_threads(num_envs: int, envs_per_thread: int) -> int:
     """As many as have enough environments each, up to the processors this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        processors = len(os.sched_getaffinity(0))
-    else:
-        processors = os.cpu_count() or 1
-    return max(1, min(processors, num_envs // envs_per_thread))
+    return max(1, min(processors(), num_envs // envs_per_thread))
+
+
+def _listed(seed: Any) -> list[int | None]:
+    if isinstance(seed, Sequence | np.ndarray) and not isinstance(seed, str | bytes):
+        return list(seed)
+    raise ConfigError(f"seed = {shown(seed)} is not a whole number or a list of them")
+
+
+def check_images(num_envs: int, size: int) -> None:
+    """Raises `ConfigError` for images that would fill the memory."""
+    if num_envs * size * size * 3 > MOST_IMAGE_BYTES:
+        most = MOST_IMAGE_BYTES // (size * size * 3)
+        raise ConfigError(
+            f"num_envs = {num_envs} with obs='retina' and retina_size = {size}: at most {most} "
+            f"environments, whose images have {MOST_IMAGE_BYTES / 2**30:g} GB"
+        )
 
 
 def _autoreset_mode(mode: AutoresetMode | str) -> AutoresetMode:
@@ -451,4 +470,4 @@ def _autoreset_mode(mode: AutoresetMode | str) -> AutoresetMode:
         return mode if isinstance(mode, AutoresetMode) else AutoresetMode(mode)
     except ValueError as error:
         known = ", ".join(m.value for m in AutoresetMode)
-        raise ConfigError(f"autoreset_mode = {mode!r} is not one of {known}") from error
+        raise ConfigError(f"autoreset_mode = {shown(mode)} is not one of {known}") from error

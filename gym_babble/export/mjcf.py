@@ -8,6 +8,7 @@ import xml.etree.ElementTree as ET
 from typing import TYPE_CHECKING, Any
 
 from gym_babble import _core
+from gym_babble.checks import check_number, check_seed
 from gym_babble.config import Config
 from gym_babble.errors import ConfigError
 from gym_babble.export.xml import COLOURS, add_comment, attribute, axis, colour, document, make_env
@@ -54,7 +55,7 @@ def export_mjcf(
         ScenarioError: The case cannot be played.
     """
     env = make_env(task, config)
-    env.reset(seed=seed, options=None if options is None else dict(options))
+    env.reset(seed=check_seed(seed), options=options)
     core, case = env.interface.task, env.scenario
     whole = Config.from_json(core.config())
     links = json.loads(core.robot())
@@ -82,9 +83,10 @@ def _timestep(given: object, numbers: ReachConfig | GraspConfig) -> float:
     longest = numbers.control_period_s
     if given is None:
         return longest / numbers.physics_steps
-    if not isinstance(given, int | float) or not 0 < given <= longest:
-        raise ConfigError(f"timestep = {given!r} is not a number above 0 and at most {longest} s")
-    return given
+    dt = check_number("timestep", given, 0.0, longest, "s")
+    if dt == 0:
+        raise ConfigError("timestep = 0 is not above 0 s")
+    return dt
 
 
 def _add_defaults(root: ET.Element, config: Config, dt: float) -> None:

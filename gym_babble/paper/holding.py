@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gym_babble import _core
+from gym_babble.checks import check_flag, check_number, check_whole, numbers, processors
 from gym_babble.config import config_json
-from gym_babble.envs.interface import check_whole
 from gym_babble.progress import track
 from gym_babble.study.outcomes import wilson
 
@@ -47,15 +46,18 @@ def hold_rates(
         flexion of thumb and finger.
 
     Raises:
-        ConfigError: `trials` is below 1, or the config is invalid.
+        ConfigError: A number is out of bounds, or the config is invalid.
     """
-    check_whole("trials", trials, 1, 1_000_000, "trials")
-    task = _core.Task("grasp", config_json(config), {})
+    trials = check_whole("trials", trials, 1, 1_000_000, "trials")
+    sizes = numbers("diameters", diameters).ravel().tolist()
+    sizes = [check_number("diameters", size, 0.005, 0.2, "m") for size in sizes]
+    show = check_flag("progress_bar", progress_bar)
+    task = _core.Task("grasp", config_json(config), "{}")
     rates = []
-    total = trials * len(diameters)
-    parts = track([trials] * len(diameters), "holding", total=total, show=progress_bar)
-    for diameter, _ in zip(diameters, parts, strict=True):
-        held, penetration, flexion = _core.hold(task, diameter, trials, os.cpu_count() or 1)
+    total = trials * len(sizes)
+    parts = track([trials] * len(sizes), "holding", total=total, show=show)
+    for diameter, _ in zip(sizes, parts, strict=True):
+        held, penetration, flexion = _core.hold(task, diameter, trials, processors())
         low, high = wilson(held, trials)
         rates.append(
             {

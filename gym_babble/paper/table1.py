@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import gymnasium
 
 from gym_babble.agents import HebbBabbling
-from gym_babble.envs.interface import check_seed, check_whole
+from gym_babble.checks import check_seed, check_whole
 from gym_babble.errors import ConfigError
 from gym_babble.study.evaluation import evaluate
 from gym_babble.study.rates import OUTCOMES, over_seeds, paper_tally, spread, tally

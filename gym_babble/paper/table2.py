@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -11,8 +10,8 @@ import numpy as np
 
 from gym_babble.agents import HebbBabbling
 from gym_babble.agents.acting import EnvArguments
+from gym_babble.checks import check_seed, check_whole, processors
 from gym_babble.config import Config, config_json
-from gym_babble.envs.interface import check_seed, check_whole
 from gym_babble.errors import ConfigError
 from gym_babble.paper.holding import hold_rates
 from gym_babble.study.evaluation import evaluate, for_cases
@@ -256,7 +255,7 @@ def _play(agent: Agent, cases: Sequence[GraspScenario], *, progress_bar: bool) -
         cases=cases,
         progress_bar=progress_bar,
         max_episode_steps=TEST_STEPS,
-        threads=os.cpu_count() or 1,
+        threads=processors(),
     )
 
 

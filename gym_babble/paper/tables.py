@@ -7,16 +7,18 @@ from typing import TYPE_CHECKING, Any
 from gym_babble.study.rates import OUTCOMES, share
 from gym_babble.study.tables import (
     INTERVALS,
-    format_interval,
     plain_table,
+    rate_cell,
     rate_cells,
     rates_table,
+    stacked,
 )
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rich.table import Table
+    from rich.text import Text
 
 __all__ = ["table1_table", "table2_tables"]
 
@@ -30,7 +32,7 @@ def table1_table(document: dict[str, Any], title: str) -> Table:
     means = document["over_seeds"]
     if means["seeds"] > 1:
         cells = [_mean_cell(means[name]) for name in (*OUTCOMES, "legal_rate")]
-        table.add_row("[bold]mean[/]\n[dim]range of seeds[/]", *cells)
+        table.add_row(stacked("mean", "range of seeds", "bold"), *cells)
     z = ", ".join(
         f"{name} {z:+.1f}" for name, z in document["z_from_paper"].items() if z is not None
     )
@@ -41,9 +43,9 @@ def table1_table(document: dict[str, Any], title: str) -> Table:
     return table
 
 
-def _mean_cell(spread: dict[str, float]) -> str:
+def _mean_cell(spread: dict[str, float]) -> Text:
     """A mean of seeds, and their range."""
-    return f"{share(spread['mean'])}\n[dim]{share(spread['min'])}–{share(spread['max'])}[/]"
+    return stacked(share(spread["mean"]), f"{share(spread['min'])}–{share(spread['max'])}")
 
 
 def table2_tables(document: dict[str, Any]) -> list[Table]:
@@ -53,12 +55,15 @@ def table2_tables(document: dict[str, Any]) -> list[Table]:
     names = [f"{100 * size['diameter']:g} cm" for size in sizes]
     # The paper's small and big objects (docs/grasping.md); other sizes have no counterpart.
     printed = dict(zip(("2.4 cm", "6 cm"), paper, strict=True))
-    heads = ["", "recalled\n[dim]spread[/]", "babbled\n[dim]spread[/]", "paper", "paper's\nideal"]
+    learnt = [stacked(of, "spread") for of in ("recalled", "babbled")]
+    heads: list[str | Text] = ["", *learnt, "paper", "paper's\nideal"]
     hands = plain_table("Table II: equilibrium points, 90° − flexion [deg]", heads)
     for name, size in zip(names, sizes, strict=True):
         for digit, found in size["hand"].items():
             cells = [
-                "–" if found[mean] is None else f"{found[mean]:.2f}\n[dim]{found[spread]:.2f}[/]"
+                "–"
+                if found[mean] is None
+                else stacked(f"{found[mean]:.2f}", f"{found[spread]:.2f}")
                 for mean, spread in (("mean", "spread"), ("babbled_mean", "babbled_spread"))
             ]
             known = printed.get(name, {}).get(digit)
@@ -72,21 +77,21 @@ def table2_tables(document: dict[str, Any]) -> list[Table]:
         for protocol, found in size["tests"].items():
             known = printed.get(name) if protocol == "table2" else None
             theirs = [share(known["reach"]), share(known["held"])] if known else ["", ""]
-            for title, cases, cells in _fact_rows(found):
-                rates.add_row(title or f"{name}, {protocol}", cases, *cells, *theirs)
+            for title, cases, shares in _fact_rows(found):
+                rates.add_row(title or f"{name}, {protocol}", cases, *shares, *theirs)
                 theirs = ["", ""]
     rates.caption = INTERVALS
     return [hands, rates, *([_hold_table(document["hold"])] if document["hold"] else [])]
 
 
-def _fact_rows(found: dict[str, Any]) -> list[tuple[str, str, list[str]]]:
+def _fact_rows(found: dict[str, Any]) -> list[tuple[str, str, list[Text]]]:
     """Title, cases and cells of a protocol's rows: means of several seeds, then each seed."""
     facts, by_seed = ("reach", "palm_reach", "held"), found["by_seed"]
     each = [
         (
             f"  seed {one['seed']}" if len(by_seed) > 1 else "",
             f"{one['cases']:,}",
-            [f"{share(one[fact]['rate'])}\n{format_interval(one[fact])}" for fact in facts],
+            [rate_cell(one[fact]) for fact in facts],
         )
         for one in by_seed
     ]
@@ -99,7 +104,10 @@ def _fact_rows(found: dict[str, Any]) -> list[tuple[str, str, list[str]]]:
 def _hold_table(rates: Sequence[dict[str, Any]]) -> Table:
     table = plain_table(
         "\nHeld through 10 s of arm motion without support",
-        ["diameter", "held", "of", "rate", "deepest\n[dim]mm[/]", "flexion\n[dim]thumb, finger[/]"],
+        [
+            *("diameter", "held", "of", "rate"),
+            *(stacked("deepest", "mm"), stacked("flexion", "thumb, finger")),
+        ],
     )
     for rate in rates:
         thumb, finger = rate["flexion_deg"]
@@ -107,7 +115,7 @@ def _hold_table(rates: Sequence[dict[str, Any]]) -> Table:
             f"{100 * rate['diameter']:g} cm",
             str(rate["held"]),
             str(rate["trials"]),
-            f"{share(rate['rate'])}\n{format_interval(rate)}",
+            rate_cell(rate),
             f"{rate['penetration_mm']:.2f}",
             f"{thumb:.1f}° {finger:.1f}°",
         )

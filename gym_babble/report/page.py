@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from gym_babble.checks import processors
 from gym_babble.report.figures import (
     curves_section,
     generators_section,
@@ -85,7 +85,7 @@ def _provenance(comparison: Comparison, command: str) -> str:
         "config": comparison.to_json()["config"],
         "seeds": ", ".join(map(str, settings.all_seeds)),
         "cases": f"protocol {protocol}, split test, {settings.cases:,} for each seed",
-        "processors": str(os.cpu_count()),
+        "processors": str(processors()),
         "time": f"{comparison.seconds:.0f} s in total",
         **{name: found or "not installed" for name, found in versions().items()},
     }

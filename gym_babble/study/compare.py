@@ -7,11 +7,10 @@ learners and its own 1,000 (`cases`) tests, and the table shows means and ranges
 
 from __future__ import annotations
 
-import os
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from gym_babble.envs.interface import check_seed
+from gym_babble.checks import check_seed
 from gym_babble.errors import ConfigError, MissingExtraError, StudyError
 from gym_babble.study.comparison import Comparison, Result, StoredResult, TrainedResult
 from gym_babble.study.contenders import CONTENDERS, Contender, Settings, own_contender
@@ -57,9 +56,8 @@ def compare(
         raise ConfigError("seeds, movements and babbles must be at least 1")
     check_seed(settings.seed)
     began = perf_counter()
-    threads = os.cpu_count() or 1
     cases = [
-        scenarios(task.protocol, settings.cases, seed, config=settings.config, threads=threads)
+        scenarios(task.protocol, settings.cases, seed, config=settings.config, threads=None)
         for seed in settings.all_seeds
     ]
     results: list[Result] = []

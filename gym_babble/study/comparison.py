@@ -9,11 +9,19 @@ from typing import TYPE_CHECKING, Any
 from gym_babble._core import __version__
 from gym_babble.config import Config, config_json
 from gym_babble.study.rates import over_seeds, paper_tally, share, sizes_of
-from gym_babble.study.tables import INTERVALS, plain_table, rate_cells, rate_heads, rate_rows
+from gym_babble.study.tables import (
+    INTERVALS,
+    plain_table,
+    rate_cells,
+    rate_heads,
+    rate_rows,
+    stacked,
+)
 from gym_babble.study.tasks import TASKS, Task
 
 if TYPE_CHECKING:
     from rich.table import Table
+    from rich.text import Text
 
     from gym_babble.study.contenders import Contender, Settings
     from gym_babble.study.learning import Learning, Trained
@@ -177,33 +185,37 @@ class Comparison:
     def table(self) -> Table:
         """The table for a terminal of 80 characters."""
         task, settings = self.task, self.settings
-        trials = f"{task.trials}\n[dim]{task.accepted}[/]"
+        from rich.text import Text
+
         seeds = f"{settings.seeds} seeds of " if settings.seeds > 1 else ""
         table = plain_table(
             f"{task.title}: {seeds}{settings.cases:,} {task.cases}",
-            ["agent", *rate_heads(task, "\n"), trials, "steps\n[dim]10⁶[/]", "clock\n[dim]s[/]"],
+            [
+                *("agent", *rate_heads(task, "\n"), stacked(task.trials, task.accepted)),
+                *(stacked("steps", "10⁶"), stacked("clock", "s")),
+            ],
             padding=0,
         )
         if task.paper is not None:
-            paper = "[bold]the paper[/]\n[dim]Table I[/]"
-            table.add_row(paper, *rate_cells(paper_tally()), "20,000\n[dim]≈.20[/]")
+            paper = stacked("the paper", "Table I", "bold")
+            table.add_row(paper, *rate_cells(paper_tally()), stacked("20,000", "≈.20"))
         for result in self.results:
             for row in _rows(result):
                 table.add_row(*row)
-        table.caption = "\n".join([INTERVALS, *self.notes]).replace("[", "\\[")
+        table.caption = Text("\n".join([INTERVALS, *self.notes]))
         return table
 
 
-def _rows(result: Result) -> list[list[str]]:
+def _rows(result: Result) -> list[list[str | Text]]:
     """The rows of a contender; only the first tells what it has learnt from."""
     first, *rest = result.rows
-    name = f"[bold]{result.contender.title}[/]\n[dim]{result.contender.detail}[/]"
-    rows = [[name, *rate_cells(first.rates, result.task)]]
+    name = stacked(result.contender.title, result.contender.detail, "bold")
+    rows: list[list[str | Text]] = [[name, *rate_cells(first.rates, result.task)]]
     if result.mean("trials"):
-        trials = f"{result.mean('trials'):,.0f}"
+        trials: str | Text = f"{result.mean('trials'):,.0f}"
         if result.accepted_rate is not None:
             accepted = f"{result.mean('accepted'):,.0f}"
-            trials = f"{accepted}\n[dim]{share(result.accepted_rate)}[/]"
+            trials = stacked(accepted, share(result.accepted_rate))
         steps = f"{result.mean('control_steps') / 1e6:.1f}"
         rows[0] += [trials, steps, f"{result.mean('seconds'):.0f}"]
     return rows + [[f"  {row.title}", *rate_cells(row.rates, result.task)] for row in rest]

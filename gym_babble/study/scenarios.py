@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict, overload
 
 from gym_babble import _core
+from gym_babble.checks import (
+    check_choice,
+    check_flag,
+    check_seed,
+    check_threads,
+    check_whole,
+    shown,
+)
 from gym_babble.config import ConfigLike, config_json
-from gym_babble.envs.interface import check_seed, check_whole
 from gym_babble.envs.labels import config_label
 from gym_babble.envs.registry import TASKS
 from gym_babble.errors import ConfigError
@@ -29,6 +37,9 @@ PROTOCOLS = {protocol: task.name for task in TASKS.values() for protocol in task
 
 SPLITS = ("learning", "validation", "test")
 """Disjoint sets of cases."""
+
+MOST_CASES = 1_000_000
+"""Cases of one call."""
 
 
 ReachProtocol: TypeAlias = Literal["table1", "fig4"]
@@ -82,7 +93,7 @@ def scenarios(
     split: str | None = None,
     goal: bool = False,
     config: ConfigLike = "paper",
-    threads: int = 1,
+    threads: int | None = 1,
 ) -> list[Scenario]: ...
 
 
@@ -95,7 +106,7 @@ def scenarios(
     split: str | None = None,
     goal: bool = False,
     config: ConfigLike = "paper",
-    threads: int = 1,
+    threads: int | None = 1,
 ) -> list[GraspScenario]: ...
 
 
@@ -108,7 +119,7 @@ def scenarios(
     split: str | None = None,
     goal: bool = False,
     config: ConfigLike = "paper",
-    threads: int = 1,
+    threads: int | None = 1,
 ) -> list[Scenario] | list[GraspScenario]: ...
 
 
@@ -120,7 +131,7 @@ def scenarios(
     split: str | None = None,
     goal: bool = False,
     config: ConfigLike = "paper",
-    threads: int = 1,
+    threads: int | None = 1,
 ) -> Any:
     """The cases of a protocol, for `reset(options={"scenario": case})`.
 
@@ -136,7 +147,7 @@ def scenarios(
             they share no case, for any seed.
         goal: In grasping, for the goal form: each case has a goal, where to carry the object.
         config: Body and task, as for the environments.
-        threads: Threads to use; the cases do not depend on it.
+        threads: Threads to use; all processors for None. The cases do not depend on it.
 
     Returns:
         The cases, as `Scenario` for reaching and `GraspScenario` for grasping.
@@ -147,17 +158,16 @@ def scenarios(
             target is the goal.
         ScenarioError: The config has no room for a case.
     """
-    if protocol not in PROTOCOLS:
-        raise ConfigError(f"protocol = {protocol!r} is not one of {', '.join(PROTOCOLS)}")
-    entry = TASKS[PROTOCOLS[protocol]]
+    entry = TASKS[PROTOCOLS[check_choice("protocol", protocol, PROTOCOLS)]]
     _check(entry.protocols[protocol], n, seed, split)
     options = dict(entry.protocols[protocol].presets)
-    if goal:
+    if check_flag("goal", goal):
         if "goal" not in {part.name for part in entry.case_parts}:
             raise ConfigError(f"goal = True: cases of {entry.title} have no goal of their own")
         options |= {"obs": "goal", "reward": "sparse"}
-    task = _core.Task(entry.name, config_json(config), options)
-    cases = task.cases(protocol, 1_000 if n is None else n, seed or 0, split or "test", threads)
+    task = _core.Task(entry.name, config_json(config), json.dumps(options))
+    many, stream, purpose = int(n or 1_000), int(seed or 0), split or "test"
+    cases = task.cases(protocol, many, stream, purpose, check_threads(threads))
     label = config_label(task, entry.name)
     return [
         {"protocol": protocol, "index": i, **case, "config": label}
@@ -168,16 +178,16 @@ def scenarios(
 
 def _check(protocol: Protocol, n: int | None, seed: int | None, split: str | None) -> None:
     if n is not None:
-        check_whole("n", n, 1, 100_000_000, "cases")
+        check_whole("n", n, 1, MOST_CASES, "cases")
     if seed is not None:
         check_seed(seed)
-    if split is not None and split not in SPLITS:
-        raise ConfigError(f"split = {split!r} is not one of {', '.join(SPLITS)}")
+    if split is not None:
+        check_choice("split", split, SPLITS)
     if protocol.random:
         return
     for name, value in (("n", n), ("seed", seed), ("split", split)):
         if value is not None:
             raise ConfigError(
-                f"{name} = {value!r}: {protocol.name!r} is one fixed list of cases, the same for "
-                f"every seed and split; it takes no {name}"
+                f"{name} = {shown(value)}: {protocol.name!r} is one fixed list of cases, the same "
+                f"for every seed and split; it takes no {name}"
             )

@@ -11,18 +11,20 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from rich.table import Table
+    from rich.text import Text
 
     from gym_babble.study.tasks import Task
 
 __all__ = [
     "INTERVALS",
     "RateRow",
-    "format_interval",
     "plain_table",
+    "rate_cell",
     "rate_cells",
     "rate_heads",
     "rate_rows",
     "rates_table",
+    "stacked",
 ]
 
 INTERVALS = (
@@ -64,37 +66,43 @@ def _rates(tallies: Sequence[Mapping[str, Any]], task: Task) -> dict[str, dict[s
     }
 
 
-def rate_heads(task: Task = REACH, between: str = " ") -> list[str]:
+def rate_heads(task: Task = REACH, between: str = " ") -> list[str | Text]:
     """Headers of the columns of `rate_cells`, with `between` separating words."""
-    touches = ["any touch\n[dim]of palm[/]"] if task.facts else []
+    touches = [stacked("any touch", "of palm")] if task.facts else []
     return [*(name.replace("_", between) for name in task.outcomes), *touches]
 
 
-def rate_cells(rates: Mapping[str, Any], task: Task = REACH) -> list[str]:
+def rate_cells(rates: Mapping[str, Any], task: Task = REACH) -> list[Text]:
     """Cells of a row: rate and interval for each outcome, and one cell for the facts."""
-    cells = [
-        f"{share(rates[name]['rate'])}\n{format_interval(rates[name])}" for name in task.outcomes
-    ]
+    cells = [rate_cell(rates[name]) for name in task.outcomes]
     if task.facts:
         first, second = (share(rates[name]["rate"]) for name in task.facts)
-        cells.append(f"{first}\n[dim]{second}[/]")
+        cells.append(stacked(first, second))
     return cells
 
 
-def format_interval(rate: Mapping[str, Any]) -> str:
-    """The interval of a rate, dimmed."""
-    return f"[dim]{share(rate['low'])}–{share(rate['high'])}[/]"
+def rate_cell(rate: Mapping[str, Any]) -> Text:
+    """A rate, and its interval below."""
+    return stacked(share(rate["rate"]), f"{share(rate['low'])}–{share(rate['high'])}")
+
+
+def stacked(first: str, second: str, style: str = "") -> Text:
+    """Two lines, the second dimmed. They are shown as they are, square brackets too."""
+    from rich.text import Text
+
+    return Text.assemble((first, style), "\n", (second, "dim"))
 
 
 def plain_table(
-    title: str | None, columns: Sequence[str], *, left: int = 1, padding: int = 1
+    title: str | None, columns: Sequence[str | Text], *, left: int = 1, padding: int = 1
 ) -> Table:
     """An empty table without lines; the first `left` columns are text, the others numbers."""
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
+    from rich.text import Text
 
     table = Table(
-        title=title,
+        title=None if title is None else Text(title),
         title_justify="left",
         title_style="bold",
         caption_justify="left",

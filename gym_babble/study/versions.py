@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import platform
 import re
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from gym_babble._core import __version__
+from gym_babble.checks import processors
 
 __all__ = ["EXTRAS", "machine", "versions"]
 
@@ -41,7 +41,7 @@ def machine() -> dict[str, str | int]:
         "system": platform.system(),
         "architecture": platform.machine(),
         "processor": _processor(),
-        "processors": os.cpu_count() or 1,
+        "processors": processors(),
     }
 
 

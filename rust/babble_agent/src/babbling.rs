@@ -241,7 +241,7 @@ impl<T: Babble> Babbling<T> {
         all: bool,
         executor: &mut Executor,
     ) -> Result<Vec<Vec<T::Experience>>, EnvError> {
-        executor.map(0..n, |i| {
+        executor.map(0..n, |i, _| {
             let mut stream = Stream::new(Purpose::Learning, self.seed, self.babbled + i as u64);
             task.babble(self.options, self.period_s, &mut stream, all)
         })

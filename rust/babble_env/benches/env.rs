@@ -6,7 +6,9 @@ use std::sync::Arc;
 use babble_env::batch::Batch;
 use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
 use babble_env::tasks::reach::{CaseRequest, ObstacleRequest};
-use babble_env::{Autoreset, Config, Control, Purpose, ReachCase, ReachOptions, ReachTask, Stream};
+use babble_env::{
+    Autoreset, Config, Control, Purpose, ReachCase, ReachOptions, ReachTask, Stop, Stream,
+};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 /// Random actions are drawn before the clock runs.
@@ -123,7 +125,9 @@ fn resets(c: &mut Criterion) {
         ("quasi-static", Fidelity::QuasiStatic),
     ] {
         c.bench_function(&format!("draw a legal case, {name}"), |b| {
-            b.iter(|| ReachCase::draw_legal(&task, &mut stream, fidelity).unwrap());
+            b.iter(|| {
+                ReachCase::draw_legal(&task, &mut stream, fidelity, &Stop::default()).unwrap()
+            });
         });
     }
 }

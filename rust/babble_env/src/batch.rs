@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::episode::{Episode, EpisodeInfo, NextEpisode, Step};
 use crate::error::EnvError;
-use crate::executor::Executor;
+use crate::executor::{Executor, Stop};
 use crate::named_enum::named_enum;
 use crate::progress::Phase;
 use crate::snapshot;
@@ -228,12 +228,14 @@ impl<T: Task> Batch<T> {
             .filter_map(|(member, &chosen)| chosen.then_some((member, None)))
             .collect();
         // All are drawn, also after an error, as each forgets what it was asked.
-        let drawn = self.pool.for_each(&mut chosen, 1, |_, (member, drawn)| {
-            *drawn = Some(member.env.draw(task)?);
-            Ok(())
-        });
+        let drawn = self
+            .pool
+            .for_each(&mut chosen, 1, |_, (member, drawn), stop| {
+                *drawn = Some(member.env.draw(task, stop)?);
+                Ok(())
+            });
         let begun = drawn.and_then(|()| {
-            self.pool.for_each(&mut chosen, 1, |_, (member, drawn)| {
+            self.pool.for_each(&mut chosen, 1, |_, (member, drawn), _| {
                 if let Some(drawn) = drawn.take() {
                     member.final_episode = None;
                     member.begin(task, drawn);
@@ -261,9 +263,11 @@ impl<T: Task> Batch<T> {
         let (task, autoreset) = (&*self.task, self.autoreset);
         let width = task.action_len();
         let least = task.min_per_thread();
-        let stepped = self.pool.for_each(&mut self.members, least, |i, member| {
-            member.step(task, &actions[i * width..][..width], autoreset)
-        });
+        let stepped = self
+            .pool
+            .for_each(&mut self.members, least, |i, member, stop| {
+                member.step(task, &actions[i * width..][..width], autoreset, stop)
+            });
         if stepped.is_err() {
             for member in &mut self.members {
                 member.env.abandon();
@@ -350,23 +354,29 @@ impl<T: Task> BatchMember<T> {
         self.record.update(task, &self.env, Step::default());
     }
 
-    fn reset(&mut self, task: &T) -> Result<(), EnvError> {
-        let drawn = self.env.draw(task)?;
+    fn reset(&mut self, task: &T, stop: &Stop<'_>) -> Result<(), EnvError> {
+        let drawn = self.env.draw(task, stop)?;
         self.begin(task, drawn);
         Ok(())
     }
 
-    fn step(&mut self, task: &T, action: &[f32], autoreset: Autoreset) -> Result<(), EnvError> {
+    fn step(
+        &mut self,
+        task: &T,
+        action: &[f32],
+        autoreset: Autoreset,
+        stop: &Stop<'_>,
+    ) -> Result<(), EnvError> {
         self.final_episode = None;
         if self.env.phase() == Phase::Ended {
             self.keep_final();
-            return self.reset(task);
+            return self.reset(task, stop);
         }
         let step = self.env.step(task, action)?;
         self.record.update(task, &self.env, step);
         if autoreset == Autoreset::SameStep && (step.terminated || step.truncated) {
             self.keep_final();
-            self.reset(task)?;
+            self.reset(task, stop)?;
             self.record.step = step;
         }
         Ok(())

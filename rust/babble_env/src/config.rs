@@ -4,13 +4,13 @@
 //! refused. Sources of the numbers: \[P\] the paper, \[F\] fitted to its tables, \[C\] our choice.
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::Path;
 
 use babble_body::Body;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::document;
 use crate::error::EnvError;
 use crate::tasks::grasp::config::GraspConfig;
 use crate::tasks::reach::config::ReachConfig;
@@ -62,8 +62,7 @@ impl Config {
     /// # Errors
     /// [`EnvError`] with the path of the field that is unknown, of a wrong type or out of bounds.
     pub fn from_json(text: &str) -> Result<Self, EnvError> {
-        let overrides = serde_json::from_str(text).map_err(|error| document(&error))?;
-        Self::from_value(overrides)
+        Self::from_value(document::from_json(text)?)
     }
 
     /// The same from a TOML document.
@@ -71,25 +70,24 @@ impl Config {
     /// # Errors
     /// As [`Self::from_json`].
     pub fn from_toml(text: &str) -> Result<Self, EnvError> {
-        let overrides: Value = toml::from_str(text).map_err(|error| document(&error))?;
-        Self::from_value(overrides)
+        Self::from_value(document::from_toml(text)?)
     }
 
     /// The same from a file that ends in `.toml` or `.json`.
     ///
     /// # Errors
-    /// As [`Self::from_json`], and for a file that cannot be read.
+    /// As [`Self::from_json`]; [`EnvError::Config`] for a file that cannot be read, is no text, or has
+    /// more than a megabyte.
     pub fn from_file(path: &Path) -> Result<Self, EnvError> {
-        let named = |problem: String| EnvError::Config {
-            field: path.display().to_string(),
-            problem,
+        let read = match path.extension().and_then(|ending| ending.to_str()) {
+            Some("toml") => Self::from_toml,
+            Some("json") => Self::from_json,
+            _ => {
+                let problem = "a config file ends in .toml or .json";
+                return Err(document::fault(&path.display().to_string(), &problem));
+            }
         };
-        let text = fs::read_to_string(path).map_err(|error| named(error.to_string()))?;
-        match path.extension().and_then(|ending| ending.to_str()) {
-            Some("toml") => Self::from_toml(&text).map_err(|error| within_file(path, error)),
-            Some("json") => Self::from_json(&text).map_err(|error| within_file(path, error)),
-            _ => Err(named("a config file ends in .toml or .json".to_owned())),
-        }
+        read(&document::text_of(path)?).map_err(|error| within_file(path, error))
     }
 
     fn from_value(overrides: Value) -> Result<Self, EnvError> {
@@ -104,7 +102,8 @@ impl Config {
             }
         };
         let base = Self::profile(profile)?;
-        let mut value = serde_json::to_value(base).map_err(|error| document(&error))?;
+        let mut value =
+            serde_json::to_value(base).map_err(|error| document::fault("document", &error))?;
         merge(&mut value, overrides, &mut Vec::new())?;
         let config: Self =
             serde_path_to_error::deserialize(value).map_err(|error| EnvError::Config {
@@ -131,7 +130,9 @@ impl Config {
     /// # Errors
     /// As [`Self::to_json`].
     pub fn difference(&self, other: &Self) -> Result<Option<[String; 3]>, EnvError> {
-        let value = |config| serde_json::to_value(config).map_err(|error| document(&error));
+        let value = |config| {
+            serde_json::to_value(config).map_err(|error| document::fault("document", &error))
+        };
         Ok(difference(&value(self)?, &value(other)?, &mut Vec::new()))
     }
 
@@ -140,7 +141,7 @@ impl Config {
     /// # Errors
     /// Never for a validated config; the serializer's signature has it.
     pub fn to_json(&self) -> Result<String, EnvError> {
-        serde_json::to_string(self).map_err(|error| document(&error))
+        serde_json::to_string(self).map_err(|error| document::fault("document", &error))
     }
 }
 
@@ -196,13 +197,10 @@ fn within_file(path: &Path, error: EnvError) -> EnvError {
             field: format!("{}: {field}", path.display()),
             problem,
         },
-        other => other,
-    }
-}
-
-fn document(error: &impl ToString) -> EnvError {
-    EnvError::Config {
-        field: "document".to_owned(),
-        problem: error.to_string(),
+        EnvError::Body(error) => document::fault(
+            &path.display().to_string(),
+            &format_args!("in body: {error}"),
+        ),
+        other => document::fault(&path.display().to_string(), &other),
     }
 }

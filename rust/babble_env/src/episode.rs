@@ -2,6 +2,7 @@
 
 use crate::check::{age, ensure};
 use crate::error::EnvError;
+use crate::executor::Stop;
 use crate::outcome::Outcome;
 use crate::progress::{EVER_SUCCESS, IS_SUCCESS, Lifecycle, Phase, Progress};
 use crate::stream::Stream;
@@ -91,14 +92,15 @@ impl<T: Task> Episode<T> {
     /// Draws the case of a new episode.
     ///
     /// # Errors
-    /// [`EnvError`] when the case asked for cannot be played; the episode stays as it was.
-    pub fn draw(&mut self, task: &T) -> Result<NextEpisode<T>, EnvError> {
+    /// [`EnvError`] when the case asked for cannot be played, and [`EnvError::Interrupted`] when `stop`
+    /// says so; the episode stays as it was.
+    pub fn draw(&mut self, task: &T, stop: &Stop<'_>) -> Result<NextEpisode<T>, EnvError> {
         let (_, lifecycle) = T::shared_mut(&mut self.state);
         let kept = || lifecycle.request.clone();
         let request = lifecycle.pending.take().unwrap_or_else(kept);
         let mut stream = lifecycle.stream.clone();
         Ok(NextEpisode {
-            drawn: task.draw(&request, &mut stream)?,
+            drawn: task.draw(&request, &mut stream, stop)?,
             request,
             stream,
         })

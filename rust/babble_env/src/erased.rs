@@ -37,6 +37,9 @@ pub trait AnyTask: Any + fmt::Debug + Send + Sync {
     /// As [`Task::robot`].
     fn robot(&self) -> Vec<LinkDescription>;
 
+    /// As [`Task::unconverged_steps`].
+    fn unconverged_steps(&self) -> Option<u64>;
+
     /// Whether one step takes longer than handing it to a thread.
     fn has_long_steps(&self) -> bool;
 
@@ -94,6 +97,10 @@ impl<T: Task> AnyTask for T {
 
     fn robot(&self) -> Vec<LinkDescription> {
         Task::robot(self)
+    }
+
+    fn unconverged_steps(&self) -> Option<u64> {
+        Task::unconverged_steps(self)
     }
 
     fn has_long_steps(&self) -> bool {

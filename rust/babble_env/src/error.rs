@@ -62,14 +62,6 @@ pub enum EnvError {
         /// What it must be.
         expected: String,
     },
-    /// The value of an option is nothing that an option can be.
-    #[error("{option} = {value} is not a name, a finite number, True, False or a list of these")]
-    OptionText {
-        /// Name of the option.
-        option: String,
-        /// The value given.
-        value: String,
-    },
     /// A part of a case has the wrong count of numbers.
     #[error("{part} = {value}: expected {expected}")]
     CaseValue {
@@ -124,11 +116,15 @@ pub enum EnvError {
     },
     /// No case could be drawn: the config leaves no room for one.
     #[error(
-        "no legal movement in {tries} tries: this config leaves no room between arm, obstacle and joint ranges"
+        "no legal movement: of {drawn} random starts and targets the arm can stand at both ends of \
+         {played}, and none of the {played} movements tried between them is legal; this config leaves \
+         no room between arm, obstacle and joint ranges"
     )]
     NoLegalCase {
-        /// How many were tried.
-        tries: u32,
+        /// Random starts and targets.
+        drawn: u32,
+        /// Movements between those that can be posed.
+        played: u32,
     },
     /// No case of grasping could be drawn: the config leaves no room for one.
     #[error("no case in {tries} tries that can be played; in the last one, {problem}")]

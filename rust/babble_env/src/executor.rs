@@ -16,20 +16,37 @@ const STRIDE: usize = 16;
 
 /// Tells work that it was interrupted.
 #[derive(Debug, Default)]
-pub struct Stop(AtomicBool);
+pub struct Stop<'a> {
+    interrupted: AtomicBool,
+    /// Who is asked in the thread that calls. In other threads that thread asks meanwhile.
+    asked: Option<(&'a Clock, fn() -> bool)>,
+}
 
-impl Stop {
-    #[cfg(feature = "threads")]
-    fn interrupt(&self) {
-        self.0.store(true, Ordering::Relaxed);
+impl<'a> Stop<'a> {
+    /// For work in the thread that calls.
+    const fn asking(clock: &'a Clock, interrupted: fn() -> bool) -> Self {
+        Self {
+            interrupted: AtomicBool::new(false),
+            asked: Some((clock, interrupted)),
+        }
     }
 
-    /// Whether to go on.
+    fn interrupt(&self) {
+        self.interrupted.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether to go on. Work that may take long asks at least once a millisecond.
     ///
     /// # Errors
     /// [`EnvError::Interrupted`] once it was interrupted.
     pub fn check(&self) -> Result<(), EnvError> {
-        if self.0.load(Ordering::Relaxed) {
+        if let Some((clock, interrupted)) = self.asked
+            && clock.is_due()
+            && interrupted()
+        {
+            self.interrupt();
+        }
+        if self.interrupted.load(Ordering::Relaxed) {
             return Err(EnvError::Interrupted);
         }
         Ok(())
@@ -92,17 +109,18 @@ impl Executor {
     pub fn map<T: Send, E: From<EnvError> + Send>(
         &mut self,
         indices: std::ops::Range<usize>,
-        each: impl Fn(usize) -> Result<T, E> + Sync,
+        each: impl Fn(usize, &Stop<'_>) -> Result<T, E> + Sync,
     ) -> Result<Vec<T>, E> {
         #[cfg(feature = "threads")]
         if self.threads > 1 {
             let each = &each;
             return self.run_until(move |stop| threads::map(indices, stop, each))?;
         }
+        let stop = Stop::asking(&self.clock, self.interrupted);
         let mut results = Vec::with_capacity(indices.len());
         for i in indices {
-            self.clock.check(self.interrupted)?;
-            results.push(each(i)?);
+            stop.check()?;
+            results.push(each(i, &stop)?);
         }
         Ok(results)
     }
@@ -116,10 +134,10 @@ impl Executor {
         &mut self,
         items: &mut [S],
         least: usize,
-        each: impl Fn(usize, &mut S) -> Result<(), EnvError> + Sync,
+        each: impl Fn(usize, &mut S, &Stop<'_>) -> Result<(), EnvError> + Sync,
     ) -> Result<(), EnvError> {
         if let [item] = items {
-            return each(0, item);
+            return each(0, item, &Stop::asking(&self.clock, self.interrupted));
         }
         #[cfg(feature = "threads")]
         if self.threads > 1 && items.len() > least {
@@ -127,7 +145,8 @@ impl Executor {
             return self.run_until(move |stop| threads::for_each(items, least, stop, each))?;
         }
         let _ = least;
-        self.in_turn(items.iter_mut(), each)
+        let stop = Stop::asking(&self.clock, self.interrupted);
+        self.in_turn(items.iter_mut(), |i, item| each(i, item, &stop))
     }
 
     /// The same, one after the other in the thread that calls: none is started for it.
@@ -140,12 +159,17 @@ impl Executor {
         mut each: impl FnMut(usize, S) -> Result<(), EnvError>,
     ) -> Result<(), EnvError> {
         let mut first = Ok(());
-        let mut clock = Clock::default();
+        let clock = Clock::default();
+        let stop = Stop::asking(&clock, self.interrupted);
         for (i, item) in items.into_iter().enumerate() {
             if i % STRIDE == STRIDE - 1 {
-                clock.check(self.interrupted)?;
+                stop.check()?;
             }
-            first = first.and(each(i, item));
+            let done = each(i, item);
+            if done == Err(EnvError::Interrupted) {
+                return done;
+            }
+            first = first.and(done);
         }
         first
     }
@@ -155,30 +179,34 @@ impl Executor {
 #[derive(Debug)]
 struct Clock {
     #[cfg(feature = "threads")]
-    asked: std::time::Instant,
+    began: std::time::Instant,
+    /// Since then \[ms\].
+    #[cfg(feature = "threads")]
+    asked: std::sync::atomic::AtomicU64,
 }
 
 impl Default for Clock {
     fn default() -> Self {
         Self {
             #[cfg(feature = "threads")]
-            asked: std::time::Instant::now(),
+            began: std::time::Instant::now(),
+            #[cfg(feature = "threads")]
+            asked: 0.into(),
         }
     }
 }
 
 impl Clock {
-    fn check(&mut self, interrupted: fn() -> bool) -> Result<(), EnvError> {
+    /// Whether it is time to ask again.
+    fn is_due(&self) -> bool {
         #[cfg(feature = "threads")]
         {
-            if self.asked.elapsed() < PATIENCE {
-                return Ok(());
+            let now = self.began.elapsed().as_millis() as u64;
+            if now - self.asked.load(Ordering::Relaxed) < PATIENCE.as_millis() as u64 {
+                return false;
             }
-            self.asked = std::time::Instant::now();
+            self.asked.store(now, Ordering::Relaxed);
         }
-        if interrupted() {
-            return Err(EnvError::Interrupted);
-        }
-        Ok(())
+        true
     }
 }

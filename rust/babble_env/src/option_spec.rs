@@ -9,6 +9,11 @@ use serde_json::{Map, Value, json};
 use crate::error::EnvError;
 use crate::near;
 
+/// Most numbers in a list.
+pub(crate) const MOST_NUMBERS: usize = 1_000;
+/// Letters of a value that an error shows.
+const MOST_LETTERS: usize = 80;
+
 /// Values of options by name, as a user gives them.
 pub type Options = Map<String, Value>;
 
@@ -46,7 +51,7 @@ pub enum OptionKind {
         /// Unit of the number.
         unit: &'static str,
     },
-    /// A list of at least one number.
+    /// A list of numbers, at least one.
     Numbers {
         /// Least value of each.
         low: f64,
@@ -146,11 +151,14 @@ impl OptionSpec {
             }
             OptionKind::Numbers { low, high, unit } => {
                 let fits = |x: &Value| x.as_f64().is_some_and(|x| (low..=high).contains(&x));
-                let numbers = value.as_array().filter(|all| !all.is_empty());
+                let numbers = value
+                    .as_array()
+                    .filter(|all| (1..=MOST_NUMBERS).contains(&all.len()));
                 if numbers.is_some_and(|all| all.iter().all(fits)) {
                     return Ok(());
                 }
-                let expected = format!("a list of numbers in [{low}, {high}] {unit}");
+                let expected =
+                    format!("a list of 1 to {MOST_NUMBERS} numbers in [{low}, {high}] {unit}");
                 Err(self.refused(value, expected))
             }
         }
@@ -173,9 +181,16 @@ impl OptionSpec {
     fn refused(&self, value: &Value, expected: String) -> EnvError {
         EnvError::OptionKind {
             option: self.name,
-            value: value.to_string(),
+            value: shortened(value.to_string()),
             expected,
         }
+    }
+}
+
+fn shortened(text: String) -> String {
+    match text.char_indices().nth(MOST_LETTERS) {
+        Some((end, _)) => format!("{} …", &text[..end]),
+        None => text,
     }
 }
 

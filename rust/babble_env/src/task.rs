@@ -11,7 +11,7 @@ use serde_json::Value;
 use crate::case::{CasePart, CaseValues};
 use crate::config::Config;
 use crate::error::EnvError;
-use crate::executor::Executor;
+use crate::executor::{Executor, Stop};
 use crate::near;
 use crate::outcome::Outcome;
 use crate::picture::View;
@@ -70,6 +70,12 @@ pub trait Task: fmt::Debug + Send + Sync + Sized + 'static {
         Vec::new()
     }
 
+    /// Physics steps in which the solver of contacts did not converge, in all episodes of this task
+    /// together; none where no solver tells.
+    fn unconverged_steps(&self) -> Option<u64> {
+        None
+    }
+
     /// Observations, actions, and the names of all that an episode shows.
     fn spec(&self) -> Spec;
 
@@ -98,8 +104,14 @@ pub trait Task: fmt::Debug + Send + Sync + Sized + 'static {
     /// Draws a case.
     ///
     /// # Errors
-    /// [`EnvError`] when the case asked for cannot be played.
-    fn draw(&self, request: &Self::Request, stream: &mut Stream) -> Result<Self::Drawn, EnvError>;
+    /// [`EnvError`] when the case asked for cannot be played, and [`EnvError::Interrupted`] when `stop`
+    /// says so, which a long search asks.
+    fn draw(
+        &self,
+        request: &Self::Request,
+        stream: &mut Stream,
+        stop: &Stop<'_>,
+    ) -> Result<Self::Drawn, EnvError>;
 
     /// Begins an episode in a state whose shared parts are set.
     fn begin(&self, state: &mut Self::State, drawn: Self::Drawn);

@@ -6,7 +6,9 @@ use babble_env::tasks::reach::case::obstacle_at;
 use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
 use babble_env::tasks::reach::protocol;
 use babble_env::tasks::reach::{CaseRequest, ObstacleRequest};
-use babble_env::{Config, Control, Executor, Purpose, ReachCase, ReachOptions, ReachTask, Stream};
+use babble_env::{
+    Config, Control, Executor, Purpose, ReachCase, ReachOptions, ReachTask, Stop, Stream,
+};
 use nalgebra::Vector2;
 use playing::{control, task};
 
@@ -63,7 +65,8 @@ fn legal_cases_can_be_solved() {
         for fidelity in [Fidelity::Full, Fidelity::QuasiStatic] {
             for i in 0..30 {
                 let mut stream = Stream::new(Purpose::Test, 2, i);
-                let case = ReachCase::draw_legal(&task, &mut stream, fidelity).unwrap();
+                let case =
+                    ReachCase::draw_legal(&task, &mut stream, fidelity, &Stop::default()).unwrap();
                 assert_playable(&task, &case);
                 assert!(is_solvable(&task, &case, fidelity), "{case:?}");
             }
@@ -120,8 +123,11 @@ fn sampled_cases_can_be_solved_in_their_control() {
         let task = task(control(of));
         for i in 0..25 {
             let stream = || Stream::new(Purpose::Test, 5, i);
-            let case = CaseRequest::default().draw(&task, &mut stream()).unwrap();
-            let legal = ReachCase::draw_legal(&task, &mut stream(), fidelity).unwrap();
+            let case = CaseRequest::default()
+                .draw(&task, &mut stream(), &Stop::default())
+                .unwrap();
+            let legal =
+                ReachCase::draw_legal(&task, &mut stream(), fidelity, &Stop::default()).unwrap();
             assert_eq!(case, legal);
             assert!(is_solvable(&task, &case, fidelity), "{of}");
             let [start, target] = [case.hand, case.target];
@@ -134,7 +140,9 @@ fn sampled_cases_can_be_solved_in_their_control() {
                 ..CaseRequest::default()
             };
             for request in [from, to] {
-                let case = request.draw(&task, &mut stream()).unwrap();
+                let case = request
+                    .draw(&task, &mut stream(), &Stop::default())
+                    .unwrap();
                 assert!(is_solvable(&task, &case, fidelity), "{of} {request:?}");
             }
         }
@@ -211,7 +219,8 @@ fn fig4_has_144_cases() {
 fn requests_are_kept() {
     let task = task(control(Control::DeltaPosture));
     let mut stream = Stream::new(Purpose::Test, 3, 0);
-    let legal = ReachCase::draw_legal(&task, &mut stream, Fidelity::QuasiStatic).unwrap();
+    let legal =
+        ReachCase::draw_legal(&task, &mut stream, Fidelity::QuasiStatic, &Stop::default()).unwrap();
     let (start, target) = (Some(legal.hand), Some(legal.target));
     let elsewhere = obstacle_at(&task, [-0.3, -0.3]);
     let wanted = |request: &ObstacleRequest, case: &ReachCase| match request {
@@ -231,7 +240,7 @@ fn requests_are_kept() {
                 target,
                 obstacle,
             };
-            let case = request.draw(&task, &mut stream).unwrap();
+            let case = request.draw(&task, &mut stream, &Stop::default()).unwrap();
             assert!(start.is_none_or(|p| p == case.hand), "{request:?}");
             assert!(target.is_none_or(|p| p == case.target), "{request:?}");
             assert!(wanted(&obstacle, &case), "{request:?}");

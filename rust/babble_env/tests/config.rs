@@ -118,11 +118,69 @@ fn wrong_types_are_named() {
         ("[1, 2]", "config: "),
         (r#""paper""#, "config: "),
         ("{", "document"),
+        ("{} {}", "document"),
     ];
     for (json, path) in cases {
         assert!(refusal(json).contains(path), "{json}: {}", refusal(json));
     }
     assert!(refusal(r#"{"profile": "nao"}"#).contains("icub"));
+}
+
+/// JSON and TOML refuse the same things, and name the field. Catches a second value that replaces the
+/// first in silence, and a number that becomes null.
+#[test]
+fn duplicate_fields_and_numbers_that_are_not_finite_are_named() {
+    let refused = [
+        (
+            Config::from_json(r#"{"reach": {"movement_s": 5, "movement_s": 6}}"#),
+            "reach",
+            "duplicate",
+        ),
+        (
+            Config::from_json(r#"{"reach": {"movement_s": 5}, "reach": {}}"#),
+            "document",
+            "duplicate",
+        ),
+        (
+            Config::from_toml("[reach]\nmovement_s = 5\nmovement_s = 6"),
+            "movement_s",
+            "duplicate",
+        ),
+        (
+            Config::from_toml("[reach]\nmovement_s = nan"),
+            "reach.movement_s",
+            "NaN is not finite",
+        ),
+        (
+            Config::from_toml("[grasp]\ndiameters_m = [0.03, -inf]"),
+            "grasp.diameters_m[1]",
+            "-inf is not finite",
+        ),
+        (
+            Config::from_json(r#"{"reach": {"movement_s": 1e400}}"#),
+            "reach.movement_s",
+            "out of range",
+        ),
+    ];
+    for (config, field, problem) in refused {
+        let error = config.unwrap_err().to_string();
+        assert!(error.contains(field) && error.contains(problem), "{error}");
+    }
+}
+
+/// Text that is nested deeper than any config is refused. Catches a stack that overflows.
+#[test]
+fn deep_text_is_refused() {
+    let json = format!("{}1{}", r#"{"reach":"#.repeat(100_000), "}".repeat(100_000));
+    let toml = format!("a = {}1{}", "[".repeat(100_000), "]".repeat(100_000));
+    let tables = format!("[{}a]", "a.".repeat(10_000));
+    for refused in [
+        Config::from_json(&json),
+        Config::from_toml(&toml),
+        Config::from_toml(&tables),
+    ] {
+        assert!(matches!(refused, Err(EnvError::Config { .. })));
+    }
 }
 
 /// Values out of bounds are named with path, value and bound. Catches a field without a check: the
@@ -215,8 +273,8 @@ fn config_without_room_says_so() {
 struct Folder(PathBuf);
 
 impl Folder {
-    fn new() -> Self {
-        let folder = std::env::temp_dir().join(format!("babble_env-{}", std::process::id()));
+    fn new(name: &str) -> Self {
+        let folder = std::env::temp_dir().join(format!("babble_env-{name}-{}", std::process::id()));
         fs::create_dir_all(&folder).unwrap();
         Self(folder)
     }
@@ -237,7 +295,7 @@ impl Drop for Folder {
 /// Files are read by their ending; one that is missing or of another kind is named.
 #[test]
 fn files_are_read_or_named() {
-    let folder = Folder::new();
+    let folder = Folder::new("files");
     let toml = folder.with("body.toml", "[reach]\nmovement_s = 4.0\n");
     let json = folder.with("body.json", r#"{"reach": {"movement_s": 4.0}}"#);
     let config = Config::from_file(&toml).unwrap();
@@ -253,4 +311,41 @@ fn files_are_read_or_named() {
     }
     let broken = folder.with("broken.toml", "[reach\n");
     assert!(Config::from_file(&broken).is_err());
+    // Whatever is wrong in a file, its path is told.
+    for text in [
+        "profile = \"nao\"",
+        "[body.arm]\nforearm_m = 0",
+        "[reach]\nspeed = 1",
+    ] {
+        let path = folder.with("wrong.toml", text);
+        let error = Config::from_file(&path).unwrap_err().to_string();
+        assert!(error.contains("wrong.toml"), "{error}");
+    }
+}
+
+/// Editors may begin UTF-8 with a byte order mark. Foreign, huge and endless files are refused.
+#[test]
+fn files_of_other_kinds_are_named() {
+    let folder = Folder::new("kinds");
+    let marked = [
+        folder.with("marked.toml", "\u{feff}profile = \"icub\""),
+        folder.with("marked.json", "\u{feff}{\"profile\": \"icub\"}"),
+    ];
+    for path in marked {
+        assert_eq!(Config::from_file(&path), Config::profile("icub"));
+    }
+    let huge = folder.with("huge.toml", &"# nothing\n".repeat(200_000));
+    let binary = folder.0.join("binary.json");
+    fs::write(&binary, [0x89, b'P', b'N', b'G', 0xff]).unwrap();
+    for (path, problem) in [
+        (huge, "at most 1048576 bytes"),
+        (binary, "not UTF-8"),
+        (folder.0.join("folder.toml"), "not a file"),
+    ] {
+        if problem == "not a file" {
+            fs::create_dir(&path).unwrap();
+        }
+        let error = Config::from_file(&path).unwrap_err().to_string();
+        assert!(error.contains(problem), "{error}");
+    }
 }

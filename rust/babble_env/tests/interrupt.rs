@@ -10,7 +10,9 @@ use babble_env::picture::View;
 use babble_env::progress::{Ending, Lifecycle, Phase, Progress};
 use babble_env::spec::{Entry, Spec};
 use babble_env::task::{MAX_TERMS, Task};
-use babble_env::{Autoreset, Batch, Config, EnvError, Executor, Outcome, Stream};
+use babble_env::{
+    Autoreset, Batch, Config, EnvError, Executor, Outcome, ReachOptions, ReachTask, Stop, Stream,
+};
 use image::RgbImage;
 use serde::Serialize;
 
@@ -137,10 +139,13 @@ impl Task for Slow {
 
     fn derive(&self, _: &Count) {}
 
-    fn draw(&self, limited: &bool, _: &mut Stream) -> Result<(), EnvError> {
+    fn draw(&self, limited: &bool, _: &mut Stream, _: &Stop<'_>) -> Result<(), EnvError> {
         let take = |left: u32| left.checked_sub(1);
         if *limited && self.draws.fetch_update(Relaxed, Relaxed, take).is_err() {
-            return Err(EnvError::NoLegalCase { tries: 1 });
+            return Err(EnvError::NoLegalCase {
+                drawn: 1,
+                played: 1,
+            });
         }
         Ok(())
     }
@@ -232,6 +237,16 @@ fn an_interrupted_step_leaves_environments_that_need_a_reset() {
     }
 }
 
+/// Environments of an arm so thick that no movement is legal, each of which takes long to try.
+fn hopeless(n: usize, executor: Executor) -> Batch<ReachTask> {
+    let config = Config::from_json(
+        r#"{"body": {"arm": {"half_width_m": 0.05}, "obstacle": {"radius_m": 0.05}},
+            "reach": {"control_period_s": 0.001, "movement_s": 8}}"#,
+    );
+    let task = ReachTask::new(config.unwrap(), ReachOptions::default()).unwrap();
+    Batch::with_executor(Arc::new(task), n, Autoreset::NextStep, executor).unwrap()
+}
+
 /// After an interrupted reset those that it chose need another; the others step on. Catches episodes
 /// that go on beside half of a new batch.
 #[test]
@@ -255,12 +270,33 @@ fn an_interrupted_reset_leaves_the_others_alone() {
     }
 }
 
+/// A search that takes a second is interrupted in its middle, of one environment too, and needs another
+/// reset. Catches a draw that nobody asks.
+#[test]
+fn an_interrupted_draw_ends_at_once() {
+    for (n, threads) in [(1, 1), (3, 1), (3, 2)] {
+        let mut calm = hopeless(n, Executor::new(threads).unwrap());
+        let began = Instant::now();
+        let searched = calm.reset(&vec![true; n]);
+        let whole = began.elapsed();
+        assert!(matches!(searched, Err(EnvError::NoLegalCase { .. })));
+        assert!(whole > Duration::from_millis(150), "{whole:?}");
+        let mut hasty = hopeless(n, after(0, threads));
+        let began = Instant::now();
+        assert_eq!(hasty.reset(&vec![true; n]), Err(EnvError::Interrupted));
+        assert!(began.elapsed() < whole / 2, "{:?}", began.elapsed());
+    }
+}
+
 /// Where no case can be drawn for one ended episode, the others were stepped and what they showed is
 /// lost: the batch is left as by an interruption, with either autoreset and any number of threads.
 /// Catches a batch that steps on as if the failed step had never been.
 #[test]
 fn a_failed_automatic_reset_leaves_environments_that_need_a_reset() {
-    let unplayable = Err(EnvError::NoLegalCase { tries: 1 });
+    let unplayable = Err(EnvError::NoLegalCase {
+        drawn: 1,
+        played: 1,
+    });
     let needs_reset = Err(EnvError::NeedsReset { env: 0 });
     for threads in [1, 2] {
         for autoreset in [Autoreset::SameStep, Autoreset::NextStep] {
@@ -310,7 +346,7 @@ fn making_a_batch_can_be_interrupted() {
 #[test]
 fn the_thread_that_waits_is_asked_now_and_then() {
     let mut items = [(); N];
-    let sleeping = |_: usize, (): &mut ()| {
+    let sleeping = |_: usize, (): &mut (), _: &Stop<'_>| {
         thread::sleep(STEP);
         Ok(())
     };
@@ -332,7 +368,7 @@ fn the_first_error_in_order_is_told_after_all_are_done() {
     for threads in [1, 2, 8] {
         let mut pool = after(u32::MAX, threads);
         let mut done: Vec<Option<ThreadId>> = vec![None; 64];
-        let result = pool.for_each(&mut done, 1, |i, item| {
+        let result = pool.for_each(&mut done, 1, |i, item, _| {
             thread::sleep(Duration::from_micros(if i == 20 { 3_000 } else { 100 }));
             *item = Some(thread::current().id());
             if i >= 20 {

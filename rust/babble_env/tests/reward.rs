@@ -239,7 +239,7 @@ fn time_limit_truncates() {
     let mut env = batch(control(Control::Pattern), 1, Autoreset::Disabled, 1, 5);
     env.step(&[0.5, -0.5]).unwrap();
     let Record { step, .. } = record(&env);
-    assert_eq!((step.terminated, step.truncated), (true, true));
+    assert_eq!((step.terminated, step.truncated), (true, false));
 }
 
 fn to_start(env: &Batch<ReachTask>) -> [f32; 2] {

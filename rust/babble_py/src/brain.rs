@@ -177,6 +177,8 @@ impl ConjunctiveMap {
 }
 
 /// Weights between two maps, and running averages of their activities.
+///
+/// In `with association:` no other thread can use it.
 #[pyclass(frozen, module = "gym_babble._core")]
 #[derive(Debug)]
 pub(crate) struct Association {
@@ -191,6 +193,19 @@ impl Association {
         Ok(Self {
             association: Guarded::new("association", association),
         })
+    }
+
+    fn __enter__(&self) -> PyResult<()> {
+        self.association.enter()
+    }
+
+    fn __exit__(
+        &self,
+        _type: &Bound<'_, PyAny>,
+        _raised: &Bound<'_, PyAny>,
+        _at: &Bound<'_, PyAny>,
+    ) {
+        self.association.leave();
     }
 
     /// Learns from input activities g (m, `n_in`) and output activities a (m, `n_out`) in their order, by

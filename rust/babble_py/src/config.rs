@@ -42,3 +42,9 @@ pub(crate) fn complete_config(text: &str) -> PyResult<String> {
 pub(crate) fn outcomes() -> Vec<&'static str> {
     Outcome::ALL.iter().map(|outcome| outcome.name()).collect()
 }
+
+/// Processors that this process may use: by its affinity, and by a container's quota.
+#[pyfunction]
+pub(crate) fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}

@@ -1,63 +1,12 @@
 //! Between Python's and Rust's values.
 
 use babble_env::case::CasePart;
-use babble_env::{CaseValue, CaseValues, EnvError, Options};
+use babble_env::{CaseValue, CaseValues, EnvError};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
-use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyTuple};
-use serde_json::{Number, Value};
+use pyo3::types::{PyDict, PyTuple};
 
 use crate::errors;
-
-/// Options by name, as JSON has them.
-pub(crate) fn options(given: &Bound<'_, PyDict>) -> PyResult<Options> {
-    given
-        .iter()
-        .map(|(name, value)| {
-            let name: String = name.extract()?;
-            let value = option_value(&name, &value)?;
-            Ok((name, value))
-        })
-        .collect()
-}
-
-fn option_value(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
-    // NumPy's scalars and arrays become Python's.
-    let plain = match value.getattr_opt(intern!(value.py(), "tolist"))? {
-        Some(convert) => convert.call0()?,
-        None => value.clone(),
-    };
-    let refused = || {
-        let value = value
-            .repr()
-            .map_or_else(|_| "a value".to_owned(), |text| text.to_string());
-        errors::env(EnvError::OptionText {
-            option: name.to_owned(),
-            value,
-        })
-    };
-    if plain.is_none() {
-        Ok(Value::Null)
-    } else if plain.is_instance_of::<PyBool>() {
-        Ok(plain.extract::<bool>()?.into())
-    } else if plain.is_instance_of::<PyInt>() {
-        plain
-            .extract::<i64>()
-            .map(Value::from)
-            .map_err(|_| refused())
-    } else if plain.is_instance_of::<PyFloat>() {
-        let number = Number::from_f64(plain.extract()?);
-        number.map(Value::Number).ok_or_else(refused)
-    } else if let Ok(text) = plain.extract::<String>() {
-        Ok(text.into())
-    } else if plain.is_instance_of::<PyList>() || plain.is_instance_of::<PyTuple>() {
-        let items = plain.try_iter()?.map(|item| option_value(name, &item?));
-        items.collect::<PyResult<Vec<_>>>().map(Value::Array)
-    } else {
-        Err(refused())
-    }
-}
 
 /// A case as the dict that `reset(options=...)` takes.
 pub(crate) fn case_dict<'py>(py: Python<'py>, case: &CaseValues) -> PyResult<Bound<'py, PyDict>> {

@@ -30,7 +30,9 @@ mod _core {
         Association, ConjunctiveMap, PopulationMap, generator_curve, place_curve, rule_json,
     };
     #[pymodule_export]
-    use crate::config::{complete_config, load_config, outcomes, profile_config, profiles};
+    use crate::config::{
+        complete_config, load_config, outcomes, processors, profile_config, profiles,
+    };
     #[pymodule_export]
     use crate::grasp::{grasp_posture, hold};
     #[pymodule_export]

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use babble_env::{AnyTask, Config, EnvError, Purpose, registry};
+use babble_env::{AnyTask, Config, EnvError, Options, Purpose, registry};
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -32,10 +32,10 @@ impl Task {
 
 #[pymethods]
 impl Task {
-    /// A task of the registry by its name, from a config as JSON and options by name.
+    /// A task of the registry by its name, from a config and options by name, both as JSON.
     #[new]
-    fn new(name: &str, config: &str, options: &Bound<'_, PyDict>) -> PyResult<Self> {
-        let options = convert::options(options)?;
+    fn new(name: &str, config: &str, options: &str) -> PyResult<Self> {
+        let options = read_options(options)?;
         let make = || registry::task(name)?.make(Config::from_json(config)?, &options);
         Ok(Self {
             task: make().map_err(errors::env)?,
@@ -60,6 +60,12 @@ impl Task {
     /// Links of arm and hand, as JSON.
     fn robot(&self) -> PyResult<String> {
         convert::json(&self.task.robot())
+    }
+
+    /// Physics steps in which the solver of contacts did not converge, in all environments of this task
+    /// together; None where no solver tells.
+    fn unconverged_steps(&self) -> Option<u64> {
+        self.task.unconverged_steps()
     }
 
     /// The cases of a protocol; None at places of a fixed list that have no case.
@@ -98,10 +104,15 @@ impl Task {
     }
 }
 
-/// Checks that options leave an environment what its id stands for.
+/// Checks that options (JSON) leave an environment what its id stands for.
 #[pyfunction]
-pub(crate) fn check_fixed(env_id: &str, options: &Bound<'_, PyDict>) -> PyResult<()> {
-    registry::check_fixed(env_id, &convert::options(options)?).map_err(errors::env)
+pub(crate) fn check_fixed(env_id: &str, options: &str) -> PyResult<()> {
+    registry::check_fixed(env_id, &read_options(options)?).map_err(errors::env)
+}
+
+fn read_options(json: &str) -> PyResult<Options> {
+    serde_json::from_str(json)
+        .map_err(|error| errors::ConfigError::new_err(format!("options: {error}")))
 }
 
 /// All tasks with their environments, options, parts of a case and protocols, as JSON.

@@ -48,7 +48,7 @@ impl Babble for GraspTask {
     type Experience = Experience;
 
     const TRIES: usize = 1;
-    const RAREST: u64 = 1_000;
+    const RAREST: u64 = 500;
     const PERIODS_S: Option<[f64; 2]> = Some([0.01, MOVING_S]);
 
     /// From a random posture to others. It can be learnt from if the hand kept the object to the end,

@@ -58,7 +58,7 @@ pub fn trials(
     n: usize,
     executor: &mut Executor,
 ) -> Result<Vec<Trial>, EnvError> {
-    executor.map(0..n, |seed| {
+    executor.map(0..n, |seed, _| {
         trial(
             task,
             diameter,

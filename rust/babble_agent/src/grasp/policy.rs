@@ -96,7 +96,7 @@ impl<C: ChooseGrasp> GraspPolicy<C> {
         if let [one] = all {
             return Ok(vec![choose(one)?]);
         }
-        executor.map(0..all.len(), |i| choose(&all[i]))
+        executor.map(0..all.len(), |i, _| choose(&all[i]))
     }
 
     /// The action of a posture \[rad\] that the equilibrium points are to take.

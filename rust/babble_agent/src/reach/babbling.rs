@@ -50,7 +50,7 @@ impl Babble for ReachTask {
     type Experience = Experience;
 
     const TRIES: usize = 5;
-    const RAREST: u64 = 100_000;
+    const RAREST: u64 = 10_000;
     const PERIODS_S: Option<[f64; 2]> = None;
 
     /// A random case, b1 uniform in its range and b2 = 1 − b1. What is seen and the parameters are the

@@ -96,7 +96,7 @@ impl<C: ChooseMovement> ReachPolicy<C> {
         if let [one] = all {
             return Ok(vec![choose(one)?]);
         }
-        executor.map(0..all.len(), |i| choose(&all[i]))
+        executor.map(0..all.len(), |i, _| choose(&all[i]))
     }
 
     fn begin(&self, senses: &[f32; SENSES], b: [f64; 2]) -> Result<Plan, EnvError> {

@@ -71,6 +71,16 @@ impl AnyEngine {
         }
     }
 
+    /// Physics steps in which the contact solver did not converge; none of an engine that does not
+    /// tell.
+    pub(super) fn unconverged_steps(&self) -> Option<u64> {
+        match self {
+            Self::Tree(tree) => Some(tree.unconverged_steps()),
+            #[cfg(feature = "rapier")]
+            Self::Rapier(_) => None,
+        }
+    }
+
     /// See [`Engine::restore`].
     pub(super) fn restore(
         &self,

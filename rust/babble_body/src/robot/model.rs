@@ -113,6 +113,13 @@ impl Robot {
         self.begin(MechanicalState::at_rest(q, ball, None))
     }
 
+    /// Physics steps of this robot in which the contact solver did not converge, in all its worlds
+    /// together; none if the engine does not tell.
+    #[must_use]
+    pub fn unconverged_steps(&self) -> Option<u64> {
+        self.engine.unconverged_steps()
+    }
+
     /// One physics step.
     pub fn step(&self, world: &mut World, commands: &MuscleCommands) {
         let World { mechanics, engine } = world;

@@ -34,11 +34,11 @@ impl Executor {
     /// As [`Self::run`]; [`EnvError::Interrupted`], also if the work was done by then.
     pub fn run_until<T: Send>(
         &mut self,
-        work: impl FnOnce(&Stop) -> T + Send,
+        work: impl FnOnce(&Stop<'_>) -> T + Send,
     ) -> Result<T, EnvError> {
         let interrupted = self.interrupted;
         // Work in many short parts is interrupted between them.
-        self.clock.check(interrupted)?;
+        Stop::asking(&self.clock, interrupted).check()?;
         let pool = self.pool.start(self.threads)?;
         let stop = &Stop::default();
         let (sender, receiver) = channel();
@@ -93,12 +93,12 @@ impl Drop for Threads {
 /// As [`Executor::map`], in the current pool.
 pub(super) fn map<T: Send, E: From<EnvError> + Send>(
     indices: Range<usize>,
-    stop: &Stop,
-    each: impl Fn(usize) -> Result<T, E> + Sync,
+    stop: &Stop<'_>,
+    each: impl Fn(usize, &Stop<'_>) -> Result<T, E> + Sync,
 ) -> Result<Vec<T>, E> {
     let one = |i| {
         stop.check()?;
-        each(i)
+        each(i, stop)
     };
     indices.into_par_iter().map(one).collect()
 }
@@ -107,15 +107,15 @@ pub(super) fn map<T: Send, E: From<EnvError> + Send>(
 pub(super) fn for_each<S: Send>(
     items: &mut [S],
     least: usize,
-    stop: &Stop,
-    each: impl Fn(usize, &mut S) -> Result<(), EnvError> + Sync,
+    stop: &Stop<'_>,
+    each: impl Fn(usize, &mut S, &Stop<'_>) -> Result<(), EnvError> + Sync,
 ) -> Result<(), EnvError> {
     let first = items
         .par_iter_mut()
         .with_min_len(least)
         .enumerate()
         .filter_map(|(i, item)| {
-            let done = stop.check().and_then(|()| each(i, item));
+            let done = stop.check().and_then(|()| each(i, item, stop));
             done.err().map(|error| (i, error))
         })
         .min_by_key(|&(i, _)| i);

@@ -22,5 +22,6 @@ mod planar_mass;
 mod solver;
 mod speeds;
 mod step;
+mod tally;
 
 pub(super) use model::Tree;

@@ -2,6 +2,7 @@
 
 use super::factor::Sparsity;
 use super::planar_mass::PlanarMass;
+use super::tally::Tally;
 use crate::config::{self, Body};
 use crate::geometry::solid::Solid;
 use crate::robot::links::Link;
@@ -22,6 +23,8 @@ pub(in crate::robot) struct Tree {
     /// Half the obstacle's height \[m\].
     pub(super) half_height: f64,
     pub(super) dt: f64,
+    /// Physics steps in which the solver did not converge.
+    unconverged: Tally,
 }
 
 /// A solid and the link that carries it.
@@ -55,7 +58,18 @@ impl Tree {
             contact: body.contact,
             half_height: body.obstacle.height_m / 2.0,
             dt,
+            unconverged: Tally::default(),
         }
+    }
+
+    /// Counts a physics step in which the solver did not converge.
+    pub(super) fn note_unconverged(&self) {
+        self.unconverged.add();
+    }
+
+    /// How many there were.
+    pub(in crate::robot) fn unconverged_steps(&self) -> u64 {
+        self.unconverged.count()
     }
 
     /// Mass of the object \[kg\].

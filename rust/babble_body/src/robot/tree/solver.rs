@@ -64,7 +64,9 @@ impl Tree {
             slopes: [0.0; SIZE],
             factors: equations.matrix,
         };
-        problem.solve(TOLERANCE * self.mass(&mechanics.ball));
+        if !problem.solve(TOLERANCE * self.mass(&mechanics.ball)) {
+            self.note_unconverged();
+        }
         problem.velocities
     }
 
@@ -121,28 +123,30 @@ struct Problem<'a> {
 }
 
 impl Problem<'_> {
-    /// Newton's method until a step would gain no more than `enough` \[J\].
-    fn solve(&mut self, enough: f64) {
+    /// Newton's method until a step would gain no more than `enough` \[J\]. Whether it got there.
+    fn solve(&mut self, enough: f64) -> bool {
         self.slope();
         for _ in 0..MAX_STEPS {
             self.factor();
             let (direction, gain) = self.direction();
             if !is_downhill(gain) {
-                return;
+                // At the least, rounding alone decides about the sign of what is left.
+                return gain.abs() <= enough;
             }
             let share = self.search(&direction, gain);
             self.go(&direction, share);
             if gain <= enough {
-                return;
+                return true;
             }
             // Near the least, curvature hardly changes: a step with the factors at hand is enough.
             self.slope();
             let (direction, gain) = self.direction();
             if gain <= enough && is_downhill(gain) {
                 self.go(&direction, 1.0);
-                return;
+                return true;
             }
         }
+        false
     }
 
     fn slope(&mut self) {

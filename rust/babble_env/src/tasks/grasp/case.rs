@@ -8,6 +8,7 @@ use super::config::RegionConfig;
 use super::task::{GraspTask, MAX_TRIES};
 use crate::case::CaseValues;
 use crate::error::EnvError;
+use crate::executor::Stop;
 use crate::stream::Stream;
 use crate::tasks::reach::case::{check_obstacle, obstacle_from, obstacle_value};
 
@@ -81,8 +82,13 @@ impl GraspRequest {
     ///
     /// # Errors
     /// [`EnvError::Case`] for a part that cannot be played, [`EnvError::NoGraspCase`] when the rest
-    /// cannot be drawn.
-    pub fn draw(&self, task: &GraspTask, stream: &mut Stream) -> Result<GraspCase, EnvError> {
+    /// cannot be drawn, [`EnvError::Interrupted`] when `stop` says so.
+    pub fn draw(
+        &self,
+        task: &GraspTask,
+        stream: &mut Stream,
+        stop: &Stop<'_>,
+    ) -> Result<GraspCase, EnvError> {
         self.check(task)?;
         let placed = self.start.is_some() && self.object.is_some();
         let carried = !task.options.goal || self.goal.is_some();
@@ -93,6 +99,7 @@ impl GraspRequest {
         };
         let mut last = None;
         for _ in 0..tries {
+            stop.check()?;
             let case = self.fill(task, stream);
             match playable(task, &case, self) {
                 Ok(()) => return Ok(case),

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::bounds::within;
 use crate::error::EnvError;
+use crate::option_spec::MOST_NUMBERS;
 
 /// Longest physics step \[s\]: in longer ones contacts tell nothing.
 const LONGEST_STEP_S: f64 = 0.02;
@@ -129,10 +130,13 @@ impl GraspConfig {
 
     /// Checks every field.
     pub(crate) fn validate(&self) -> Result<(), EnvError> {
-        if self.diameters_m.is_empty() {
+        if !(1..=MOST_NUMBERS).contains(&self.diameters_m.len()) {
             return Err(EnvError::Config {
                 field: "grasp.diameters_m".to_owned(),
-                problem: "there must be at least one diameter".to_owned(),
+                problem: format!(
+                    "there are {} diameters: there must be at least one and at most {MOST_NUMBERS}",
+                    self.diameters_m.len()
+                ),
             });
         }
         for (i, &diameter) in self.diameters_m.iter().enumerate() {

@@ -17,7 +17,7 @@ use super::{check, picture, protocol, spec};
 use crate::case::{CasePart, CaseValues};
 use crate::config::Config;
 use crate::error::EnvError;
-use crate::executor::Executor;
+use crate::executor::{Executor, Stop};
 use crate::outcome::Outcome;
 use crate::picture::View;
 use crate::progress::{Ending, Lifecycle, Progress};
@@ -84,6 +84,10 @@ impl Task for GraspTask {
         self.robot.description()
     }
 
+    fn unconverged_steps(&self) -> Option<u64> {
+        self.robot.unconverged_steps()
+    }
+
     fn shared(state: &GraspState) -> (&Progress, &Lifecycle<GraspRequest>) {
         (&state.progress, &state.lifecycle)
     }
@@ -104,8 +108,13 @@ impl Task for GraspTask {
         episode::look(self, state)
     }
 
-    fn draw(&self, request: &GraspRequest, stream: &mut Stream) -> Result<GraspCase, EnvError> {
-        request.draw(self, stream)
+    fn draw(
+        &self,
+        request: &GraspRequest,
+        stream: &mut Stream,
+        stop: &Stop<'_>,
+    ) -> Result<GraspCase, EnvError> {
+        request.draw(self, stream, stop)
     }
 
     fn begin(&self, state: &mut GraspState, case: GraspCase) {

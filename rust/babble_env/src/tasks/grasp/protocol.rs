@@ -3,7 +3,7 @@
 use super::case::{GraspCase, GraspRequest};
 use super::task::GraspTask;
 use crate::error::EnvError;
-use crate::executor::Executor;
+use crate::executor::{Executor, Stop};
 use crate::stream::{Purpose, Stream};
 
 /// Distances of Table II's objects from the shoulder \[m\] and their directions \[deg\] \[C\].
@@ -37,8 +37,8 @@ pub fn random(
     executor: &mut Executor,
 ) -> Result<Vec<GraspCase>, EnvError> {
     let request = GraspRequest::default();
-    executor.map(0..n, |i| {
-        request.draw(task, &mut Stream::new(purpose, seed, i as u64))
+    executor.map(0..n, |i, stop| {
+        request.draw(task, &mut Stream::new(purpose, seed, i as u64), stop)
     })
 }
 
@@ -69,5 +69,5 @@ fn case(task: &GraspTask, diameter: f64, position: usize, start: usize) -> Optio
     };
     // Nothing is left to draw but the goal of the goal form.
     let mut stream = Stream::new(Purpose::Test, 0, (position * 100 + start) as u64);
-    request.draw(task, &mut stream).ok()
+    request.draw(task, &mut stream, &Stop::default()).ok()
 }

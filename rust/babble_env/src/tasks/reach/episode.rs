@@ -10,6 +10,7 @@ use super::state::{ReachState, at};
 use super::task::ReachTask;
 use crate::episode::clipped;
 use crate::error::EnvError;
+use crate::executor::Stop;
 use crate::options::{Control, Reward};
 use crate::outcome::Outcome;
 use crate::progress::{Lifecycle, Progress};
@@ -76,8 +77,9 @@ pub(super) fn draw(
     task: &ReachTask,
     request: &CaseRequest,
     stream: &mut Stream,
+    stop: &Stop<'_>,
 ) -> Result<Drawn, EnvError> {
-    let case = request.draw(task, stream)?;
+    let case = request.draw(task, stream, stop)?;
     let gaze = task.foveate(&case)?;
     Ok(Drawn { case, gaze })
 }

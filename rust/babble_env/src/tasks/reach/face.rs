@@ -17,7 +17,7 @@ use super::{check, picture, protocol, spec};
 use crate::case::{CasePart, CaseValues};
 use crate::config::Config;
 use crate::error::EnvError;
-use crate::executor::Executor;
+use crate::executor::{Executor, Stop};
 use crate::options::Control;
 use crate::outcome::Outcome;
 use crate::picture::View;
@@ -123,8 +123,13 @@ impl Task for ReachTask {
         Sight::new(self, state)
     }
 
-    fn draw(&self, request: &CaseRequest, stream: &mut Stream) -> Result<Drawn, EnvError> {
-        episode::draw(self, request, stream)
+    fn draw(
+        &self,
+        request: &CaseRequest,
+        stream: &mut Stream,
+        stop: &Stop<'_>,
+    ) -> Result<Drawn, EnvError> {
+        episode::draw(self, request, stream, stop)
     }
 
     fn begin(&self, state: &mut ReachState, drawn: Drawn) {

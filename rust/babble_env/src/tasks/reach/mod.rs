@@ -11,6 +11,7 @@ mod options;
 mod picture;
 pub mod protocol;
 pub mod request;
+mod search;
 mod spec;
 mod state;
 mod task;

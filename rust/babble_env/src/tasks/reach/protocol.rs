@@ -28,11 +28,12 @@ pub fn table1(
     purpose: Purpose,
     executor: &mut Executor,
 ) -> Result<Vec<ReachCase>, EnvError> {
-    executor.map(0..n, |i| {
+    executor.map(0..n, |i, stop| {
         ReachCase::draw_legal(
             task,
             &mut Stream::new(purpose, seed, i as u64),
             Fidelity::Full,
+            stop,
         )
     })
 }

@@ -6,16 +6,14 @@ use serde::{Deserialize, Serialize};
 
 use super::case::{ReachCase, check_clear, check_obstacle, obstacle_from, posture_for};
 use super::movement::{Fidelity, MovementPath};
+use super::search::Search;
 use super::task::ReachTask;
 use crate::case::CaseValues;
 use crate::error::EnvError;
+use crate::executor::Stop;
 use crate::options::Control;
 use crate::stream::Stream;
 
-/// How often a case is drawn before the config is called impossible.
-const MAX_TRIES: u32 = 100_000;
-/// The same for cases around an obstacle that a user placed, each of which is legal by itself.
-const MAX_TRIES_AROUND: u32 = 1_000;
 impl ReachCase {
     /// A random geometry: target uniform in joint space, start in a uniform direction at a uniform
     /// distance from it \[C\].
@@ -23,8 +21,18 @@ impl ReachCase {
     /// # Errors
     /// [`EnvError::NoLegalCase`] when the config leaves no room for one.
     pub fn draw_geometry(task: &ReachTask, stream: &mut Stream) -> Result<Self, EnvError> {
+        let stop = Stop::default();
+        Self::search_geometry(task, stream, &mut Search::new(task, &stop))
+    }
+
+    fn search_geometry(
+        task: &ReachTask,
+        stream: &mut Stream,
+        search: &mut Search<'_>,
+    ) -> Result<Self, EnvError> {
         let [near, far] = task.config.reach.distance_m;
-        for _ in 0..MAX_TRIES {
+        loop {
+            search.draw()?;
             let q = task
                 .arm
                 .denormalised([stream.uniform(0.0, 1.0), stream.uniform(0.0, 1.0)]);
@@ -36,7 +44,6 @@ impl ReachCase {
                 return Ok(case);
             }
         }
-        Err(EnvError::NoLegalCase { tries: MAX_TRIES })
     }
 
     /// The case of a babbled movement that was legal: geometry and b1 are drawn until one is.
@@ -44,21 +51,32 @@ impl ReachCase {
     /// Such a case can be solved, as those of the paper's test set can.
     ///
     /// # Errors
-    /// [`EnvError::NoLegalCase`] when the config leaves no room for one.
+    /// [`EnvError::NoLegalCase`] when the config leaves no room for one; [`EnvError::Interrupted`] when
+    /// `stop` says so.
     pub fn draw_legal(
         task: &ReachTask,
         stream: &mut Stream,
         fidelity: Fidelity,
+        stop: &Stop<'_>,
     ) -> Result<Self, EnvError> {
-        for _ in 0..MAX_TRIES {
-            let case = Self::draw_geometry(task, stream)?;
-            let [low, high] = task.config.reach.b_range;
+        Self::search_legal(task, stream, fidelity, &mut Search::new(task, stop))
+    }
+
+    fn search_legal(
+        task: &ReachTask,
+        stream: &mut Stream,
+        fidelity: Fidelity,
+        search: &mut Search<'_>,
+    ) -> Result<Self, EnvError> {
+        let [low, high] = task.config.reach.b_range;
+        loop {
+            let case = Self::search_geometry(task, stream, search)?;
+            search.play()?;
             let b1 = stream.uniform(low, high);
             if MovementPath::new(task, &case, [b1, 1.0 - b1])?.is_legal(task, &case, fidelity) {
                 return Ok(case);
             }
         }
-        Err(EnvError::NoLegalCase { tries: MAX_TRIES })
     }
 }
 
@@ -117,25 +135,36 @@ impl CaseRequest {
     ///
     /// # Errors
     /// [`EnvError::Case`] for a part that cannot be played, [`EnvError::NoLegalCase`] when the rest
-    /// cannot be drawn.
-    pub fn draw(&self, task: &ReachTask, stream: &mut Stream) -> Result<ReachCase, EnvError> {
+    /// cannot be drawn, [`EnvError::Interrupted`] when `stop` says so.
+    pub fn draw(
+        &self,
+        task: &ReachTask,
+        stream: &mut Stream,
+        stop: &Stop<'_>,
+    ) -> Result<ReachCase, EnvError> {
         if let (Some(start), Some(target)) = (self.start, self.target) {
             return self.both_given(task, start, target);
         }
+        let search = &mut Search::new(task, stop);
         match self.obstacle {
-            ObstacleRequest::Halfway => self.draw_ends(task, stream),
+            ObstacleRequest::Halfway => self.draw_ends(task, stream, search),
             ObstacleRequest::Absent => Ok(ReachCase {
                 obstacle: None,
-                ..self.draw_ends(task, stream)?
+                ..self.draw_ends(task, stream, search)?
             }),
-            ObstacleRequest::At(obstacle) => self.draw_around(task, stream, obstacle),
+            ObstacleRequest::At(obstacle) => self.draw_around(task, stream, obstacle, search),
         }
     }
 
-    fn draw_ends(&self, task: &ReachTask, stream: &mut Stream) -> Result<ReachCase, EnvError> {
+    fn draw_ends(
+        &self,
+        task: &ReachTask,
+        stream: &mut Stream,
+        search: &mut Search<'_>,
+    ) -> Result<ReachCase, EnvError> {
         match (self.start, self.target) {
-            (None, None) => ReachCase::draw_legal(task, stream, drawn_by(task)),
-            (start, target) => draw_other_end(task, stream, start, target),
+            (None, None) => ReachCase::search_legal(task, stream, drawn_by(task), search),
+            (start, target) => draw_other_end(task, stream, start, target, search),
         }
     }
 
@@ -145,13 +174,14 @@ impl CaseRequest {
         task: &ReachTask,
         stream: &mut Stream,
         obstacle: Obstacle,
+        search: &mut Search<'_>,
     ) -> Result<ReachCase, EnvError> {
         check_obstacle(&obstacle)?;
         if let Some(start) = self.start {
             check_clear(task, &obstacle, posture_for(task, "start", start)?)?;
         }
-        for _ in 0..MAX_TRIES_AROUND {
-            let case = self.draw_ends(task, stream)?;
+        loop {
+            let case = self.draw_ends(task, stream, search)?;
             let end = posture_for(task, "target", case.target)?;
             if [case.start, end]
                 .iter()
@@ -163,9 +193,6 @@ impl CaseRequest {
                 });
             }
         }
-        Err(EnvError::NoLegalCase {
-            tries: MAX_TRIES_AROUND,
-        })
     }
 
     fn both_given(
@@ -202,6 +229,7 @@ fn draw_other_end(
     stream: &mut Stream,
     start: Option<[f64; 2]>,
     target: Option<[f64; 2]>,
+    search: &mut Search<'_>,
 ) -> Result<ReachCase, EnvError> {
     let (what, given) = match (start, target) {
         (Some(start), _) => ("start", start),
@@ -210,7 +238,8 @@ fn draw_other_end(
     posture_for(task, what, given)?;
     let [near, far] = task.config.reach.distance_m;
     let given = Vector2::from(given);
-    for _ in 0..MAX_TRIES {
+    loop {
+        search.draw()?;
         let (sin, cos) = libm::sincos(stream.uniform(0.0, std::f64::consts::TAU));
         let other = given + Vector2::new(cos, sin) * stream.uniform(near, far);
         let (hand, target) = if start.is_some() {
@@ -223,9 +252,9 @@ fn draw_other_end(
         let Some(case) = ReachCase::between(task, hand, target) else {
             continue;
         };
+        search.play()?;
         if MovementPath::new(task, &case, [b1, 1.0 - b1])?.is_legal(task, &case, drawn_by(task)) {
             return Ok(case);
         }
     }
-    Err(EnvError::NoLegalCase { tries: MAX_TRIES })
 }

@@ -9,7 +9,7 @@ use super::task::PointTask;
 use crate::case::{CasePart, CaseValues};
 use crate::config::Config;
 use crate::error::EnvError;
-use crate::executor::Executor;
+use crate::executor::{Executor, Stop};
 use crate::outcome::Outcome;
 use crate::picture::{View, no_such_frame};
 use crate::progress::{Ending, Lifecycle, Progress, SUCCESS_FACTS};
@@ -95,7 +95,12 @@ impl Task for PointTask {
 
     fn derive(&self, _: &PointState) {}
 
-    fn draw(&self, request: &TargetRequest, stream: &mut Stream) -> Result<[f64; 2], EnvError> {
+    fn draw(
+        &self,
+        request: &TargetRequest,
+        stream: &mut Stream,
+        _: &Stop<'_>,
+    ) -> Result<[f64; 2], EnvError> {
         episode::draw(request, stream)
     }
 
@@ -150,7 +155,7 @@ impl Task for PointTask {
         executor: &mut Executor,
     ) -> Result<Vec<Option<CaseValues>>, EnvError> {
         ENTRY.protocol(protocol)?;
-        executor.map(0..n, |i| {
+        executor.map(0..n, |i, _| {
             let target = Self::sample(&mut Stream::new(purpose, seed, i as u64));
             Ok(Some(CaseValues::default().with("target", target)))
         })

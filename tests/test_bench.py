@@ -16,7 +16,6 @@ import gym_babble
 from bench import chart, clock, ours, peers, process, report, run
 from bench.cases import CASES, OURS
 from gym_babble.envs import BabbleGraspVectorEnv
-from gym_babble.envs.interface import outcome_of
 
 SHORT_S = 0.05
 # One of each kind of row, and what makes a large one small.
@@ -87,7 +86,7 @@ def test_every_hand_holds_its_object_at_every_timed_step():
     for action in moves:
         info = envs.step(action)[4]
         assert info["held"].all()
-        assert outcome_of(info)["running"].all()
+        assert info["outcome"]["running"].all()
     assert np.ptp(moves[:, :, :2], axis=0).min() > 0.1  # The arm moves.
 
 

@@ -453,7 +453,7 @@ def test_doctor(run, run_json):
         (["reproduce", "table1", "--control", "torque"], "--control"),
         (["render", "random", "--out", "film", "--format", "avi"], "--format"),
         (["export", "--format", "sdf"], "--format"),
-        (["export", "--timestep", "0"], "timestep = 0.0"),
+        (["export", "--timestep", "0"], "timestep = 0 is not above 0 s"),
         (["export", "--config", "thin.toml"], "thin.toml"),
         (["export", "--out", "no/robot.xml"], "no/robot.xml"),
         (["dance"], "dance"),

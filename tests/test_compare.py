@@ -132,7 +132,7 @@ def test_hebb_grasping_counts_what_it_babbled(grasping):
     result = grasping.result("hebb-paper")
     (one,) = result.trained
     assert one.accepted == 60 <= one.trials
-    assert one.control_steps == 80 * one.trials  # 4 s in steps of 50 ms.
+    assert one.control_steps == 160 * one.trials  # 8 s in steps of 50 ms.
     assert result.accepted_rate == 60 / one.trials
     assert one.curve[-1].control_steps == one.control_steps
     assert len(one.curve) == 2

@@ -443,12 +443,12 @@ PROMPTLY_S = 2.0
 """Processor time until a hopeless body says so."""
 
 
-def promptly(call, named):
+def promptly(call, named, within=PROMPTLY_S):
     """Its error tells what was tried, within a few seconds."""
     began = time.process_time()
     with pytest.raises(BabbleError, match=named) as caught:
         call()
-    assert time.process_time() - began < PROMPTLY_S
+    assert time.process_time() - began < within
     return str(caught.value)
 
 
@@ -470,12 +470,10 @@ def test_a_hopeless_body_says_so_in_seconds(name):
 
 
 def test_a_hopeless_hand_says_so_in_seconds():
-    # Balls that slip out of the hand.
-    slippery = {"body": {"object": {"friction": 0.0, "support_friction": 0.0}}}
-    crossed = {"body": {"grip": {"reflex_deg": [0.0, 1.0]}}}
-    for config in (slippery, crossed):
-        agent = HebbBabbling(BabbleGraspEnv(config=config), threads=1)
-        promptly(lambda agent=agent: agent.learn(10), "only 0 of 5.. babbles")
+    # An open hand, and a palm too near for an object before it: 500 babbles of 5 ms are tried.
+    config = {"body": {"grip": {"reflex_deg": [0, 0]}}, "grasp": {"palm_reach_m": 0.01}}
+    agent = HebbBabbling(BabbleGraspEnv(config=config), threads=1)
+    promptly(lambda: agent.learn(10), "only 0 of 5.. babbles", within=3 * PROMPTLY_S)
     region = {"radius_m": [0.01, 0.011], "polar_deg": [-5, 5]}
     nowhere = {"grasp": {"palm_side": region, "full": region}}
     for protocol in ("palm_side", "full"):

@@ -118,19 +118,25 @@ def foreseeing(n):
     return lambda: Oracle().decide(senses)
 
 
+def core_learner(env, threads):
+    task = env.interface.task
+    brain = _core.brain_json(env.interface.entry.name, "paper")
+    return _core.Learner(task, brain, 0, "null", threads)
+
+
 # Each would take 10 s and more.
 FOREVER = {
     "make": lambda: lambda: _core.Batch(BabbleGraspEnv().interface.task, 200_000),
     "learn": lambda: learning("reach", 100_000),
     "learn by a rule of one's own": lambda: learning("reach", 100_000, rule=slow_rule),
     "core learn": lambda: (
-        lambda: _core.Learner("reach", _core.brain_json("reach", "paper"), 0, "null", 1).learn(
+        lambda: core_learner(BabbleReachEnv(), threads=1).learn(
             BabbleReachEnv().interface.task, 100_000
         )
     ),
     "learn to grasp": lambda: learning("grasp", 2_000),
     "core learn to grasp": lambda: (
-        lambda: _core.Learner("grasp", _core.brain_json("grasp", "paper"), 0, "null", 2).learn(
+        lambda: core_learner(BabbleGraspEnv(), threads=2).learn(
             BabbleGraspEnv().interface.task, 2_000
         )
     ),

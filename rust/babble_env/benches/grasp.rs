@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use babble_env::tasks::grasp::{GraspRequest, Grip};
 use babble_env::{
-    Config, Control, Episode, GraspOptions, GraspTask, Purpose, Stream, Task, snapshot,
+    Config, Control, Episode, GraspOptions, GraspTask, Purpose, Stop, Stream, Task, snapshot,
 };
 use criterion::{Criterion, criterion_group, criterion_main};
 
@@ -21,7 +21,9 @@ fn task(control: Control) -> GraspTask {
 fn begun(task: &GraspTask, request: GraspRequest) -> Episode<GraspTask> {
     let mut episode = Episode::new(task, Stream::new(Purpose::Validation, 1, 0));
     episode.request(request);
-    let drawn = episode.draw(task).expect("it can be played");
+    let drawn = episode
+        .draw(task, &Stop::default())
+        .expect("it can be played");
     episode.begin(task, drawn);
     episode
 }
@@ -82,7 +84,9 @@ fn resets(c: &mut Criterion) {
         episode.request(request);
         c.bench_function(name, |b| {
             b.iter(|| {
-                let drawn = episode.draw(&task).expect("it can be played");
+                let drawn = episode
+                    .draw(&task, &Stop::default())
+                    .expect("it can be played");
                 episode.begin(&task, drawn);
             });
         });

@@ -14,12 +14,15 @@ mod threads;
 /// Items between two looks at the clock.
 const STRIDE: usize = 16;
 
+/// When the calling thread asks, and whom.
+type Asked<'a> = (&'a Clock, fn() -> bool);
+
 /// Tells work that it was interrupted.
 #[derive(Debug, Default)]
 pub struct Stop<'a> {
     interrupted: AtomicBool,
     /// Who is asked in the thread that calls. In other threads that thread asks meanwhile.
-    asked: Option<(&'a Clock, fn() -> bool)>,
+    asked: Option<Asked<'a>>,
 }
 
 impl<'a> Stop<'a> {

@@ -77,7 +77,7 @@ impl Ending {
     /// The task sets the outcome of a failure; every other outcome is decided here, so that outcome,
     /// success facts and end agree. An episode that failed is no success, even where positions alone
     /// would make it one. An episode that the task ends at the time limit is both, as in Gymnasium's
-    /// `TimeLimit`.
+    /// `TimeLimit`; an episode of one step is complete, and nothing cuts it off.
     pub(crate) fn conclude(self, progress: &mut Progress, done: bool) -> [bool; 2] {
         progress.steps += 1;
         let failed = progress.outcome.is_failure();
@@ -85,7 +85,7 @@ impl Ending {
         progress.ever_success |= progress.is_success;
         let decided = !self.goal && (failed || progress.is_success);
         let terminated = self.single_step || decided;
-        let truncated = progress.steps >= self.max_steps;
+        let truncated = !self.single_step && progress.steps >= self.max_steps;
         if !failed {
             progress.outcome = match (terminated || truncated, progress.is_success) {
                 (false, _) => Outcome::Running,

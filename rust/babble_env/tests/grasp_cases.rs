@@ -6,7 +6,7 @@ mod playing;
 use babble_env::tasks::grasp::{GraspCase, GraspRequest, InHand, Region, protocol};
 use babble_env::{
     Autoreset, Batch, Config, Control, EnvError, Executor, GraspOptions, GraspTask, Purpose,
-    Reward, Stream,
+    Reward, Stop, Stream,
 };
 use nalgebra::Vector3;
 use playing::bits;
@@ -455,7 +455,11 @@ fn impossible_options_are_named() {
 #[test]
 fn a_stream_gives_its_case() {
     let task = grasp(GraspOptions::default());
-    let draw = |stream: &mut Stream| GraspRequest::default().draw(&task, stream).unwrap();
+    let draw = |stream: &mut Stream| {
+        GraspRequest::default()
+            .draw(&task, stream, &Stop::default())
+            .unwrap()
+    };
     let mut stream = Stream::new(Purpose::Test, 4, 2);
     let (first, second) = (draw(&mut stream), draw(&mut stream));
     assert_ne!(first, second);

@@ -135,7 +135,7 @@ fn options_are_checked_by_name_kind_and_bound() {
         ),
         (
             json!({"diameters": []}),
-            "diameters = [] is not a list of numbers in [0.005, 0.2] m",
+            "diameters = [] is not a list of 1 to 1000 numbers in [0.005, 0.2] m",
         ),
         (json!({"diameters": [0.03, 0.3]}), "diameters = [0.03,0.3]"),
     ] {

@@ -98,11 +98,10 @@ class Scripted(_Reference):
 class Oracle(_Reference):
     """Tries in simulation before it acts.
 
-    In reaching it simulates 99 values of b1, or 999 if none of those succeeds, and takes the
-    middle of the longest run that succeeds. In grasping it simulates grasps of an object where the
-    eye looks, of each of the config's diameters: first the script's, then with other aims and ways
-    around the object; it plays the first one that holds all diameters, or else the one that holds
-    most.
+    In reaching it simulates up to 99 values of b1 and takes the middle of the longest run that
+    succeeds. In grasping it simulates grasps of an object where the eye looks, of each of the
+    config's diameters: first the script's, then with other aims and ways around the object; it
+    plays the first one that holds all diameters, or else the one that holds most.
 
     Args:
         env: An id or an environment.

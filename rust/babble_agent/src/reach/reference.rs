@@ -4,8 +4,8 @@ use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
 use babble_env::tasks::reach::{SENSES, at};
 use babble_env::{EnvError, Outcome, ReachCase, ReachTask};
 
-/// Steps of b1 that the oracle tries: 0.01, and 0.001 where no value of the first succeeds.
-const ORACLE_STEPS: [u32; 2] = [100, 1000];
+/// Values of b1 that the oracle tries: 0.01, 0.02, … 0.99.
+const ORACLE_VALUES: u32 = 99;
 /// Distance of the scripted b1 from ½.
 const SCRIPTED_CURVE: f64 = 0.25;
 
@@ -58,30 +58,16 @@ pub fn scripted(case: &ReachCase) -> [f64; 2] {
     [b1, 1.0 - b1]
 }
 
-/// The movement that succeeds, found by simulating up to 99 of them, or 999 where none of those does:
-/// from the middle of the longest run of values that do; a straight one if none does.
+/// The movement that succeeds, found by simulating up to 99 of them, from the middle of the longest
+/// run of values that do; a straight one if none does.
 ///
 /// # Errors
 /// [`EnvError::Brain`] never, as all values tried are in (0, 1).
 pub fn oracle(task: &ReachTask, case: &ReachCase) -> Result<[f64; 2], EnvError> {
-    for steps in ORACLE_STEPS {
-        if let Some(b1) = middle_of_successes(task, case, steps)? {
-            return Ok([b1, 1.0 - b1]);
-        }
-    }
-    Ok([0.5, 0.5])
-}
-
-/// Middle of the longest run of successful b1 among 1/steps, 2/steps, … 1 − 1/steps.
-fn middle_of_successes(
-    task: &ReachTask,
-    case: &ReachCase,
-    steps: u32,
-) -> Result<Option<f64>, EnvError> {
     let mut best = (0, 0);
     let mut run = 0;
-    for k in 1..steps {
-        let b1 = f64::from(k) / f64::from(steps);
+    for k in 1..=ORACLE_VALUES {
+        let b1 = f64::from(k) / f64::from(ORACLE_VALUES + 1);
         let path = MovementPath::new(task, case, [b1, 1.0 - b1])?;
         let succeeds = path.is_legal(task, case, Fidelity::QuasiStatic)
             && path.play(task, case, Fidelity::Full, |_| {}).outcome == Outcome::Success;
@@ -91,8 +77,11 @@ fn middle_of_successes(
         }
     }
     let (length, last) = best;
-    let middle = || (f64::from(last) - 0.5 * f64::from(length - 1)) / f64::from(steps);
-    Ok((length > 0).then(middle))
+    if length == 0 {
+        return Ok([0.5, 0.5]);
+    }
+    let b1 = (f64::from(last) - 0.5 * f64::from(length - 1)) / f64::from(ORACLE_VALUES + 1);
+    Ok([b1, 1.0 - b1])
 }
 
 /// Equilibrium points of a whole movement, one a control step, as shares of the joint ranges; from

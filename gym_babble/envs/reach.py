@@ -77,8 +77,7 @@ class BabbleReachEnv(BabbleEnv):
       goal.
     - `joint_limit` (terminated): in `pattern` control, the path asks for a posture outside of the
       joint ranges.
-    - `timeout`: truncated after 240 steps (12 s). In `pattern` control every step is terminated and
-      truncated.
+    - `timeout`: truncated after 240 steps (12 s). In `pattern` control every step terminates.
 
     ## Info
 

@@ -57,7 +57,7 @@ def test_success_terminates(control):
     env.reset(seed=0, options=NEAR)
     action = 2 * env.reset()[0]["arm"] - 1 if control == "posture" else HOLD
     _, reward, terminated, truncated, info = env.step(action)
-    assert (terminated, truncated) == (True, control == "pattern")  # One step is its limit.
+    assert (terminated, truncated) == (True, False)
     assert outcome_of(info) == "success"
     assert info["is_success"]
     assert info["ever_success"]
@@ -71,8 +71,7 @@ def test_collision_terminates_in_every_control():
     for control, action in actions.items():
         env = BabbleReachEnv(control=control)
         _, reward, terminated, truncated, info = play(env, np.array(action), BLOCKED)
-        late = control == "pattern"  # Its only step is also the last.
-        assert (terminated, truncated, outcome_of(info)) == (True, late, "collision"), control
+        assert (terminated, truncated, outcome_of(info)) == (True, False, "collision"), control
         assert info["reward_terms"]["failure"] == -1
         assert not info["is_success"]
         assert reward < 0
@@ -92,7 +91,7 @@ def test_a_path_out_of_the_joint_ranges_terminates_in_pattern_control():
     for seed in range(40):
         env.reset(seed=seed, options={"obstacle": None})
         _, _, terminated, truncated, info = env.step([1, -1])
-        assert (terminated, truncated) == (True, True)
+        assert (terminated, truncated) == (True, False)
         outcomes.add(outcome_of(info))
     assert "joint_limit" in outcomes
     assert "collision" not in outcomes
@@ -118,7 +117,7 @@ def test_pattern_control_always_terminates_after_one_step():
         for seed in range(30):
             env.reset(seed=seed)
             observation, _, terminated, truncated, info = env.step(env.action_space.sample())
-            assert (terminated, truncated) == (True, True)
+            assert (terminated, truncated) == (True, False)
             assert observation["time"] == 1
             outcomes.add(outcome_of(info))
         assert "timeout" in outcomes or "success" in outcomes

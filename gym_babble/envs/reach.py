@@ -77,7 +77,8 @@ class BabbleReachEnv(BabbleEnv):
       goal.
     - `joint_limit` (terminated): in `pattern` control, the path asks for a posture outside of the
       joint ranges.
-    - `timeout`: truncated after 240 steps (12 s). In `pattern` control every step terminates.
+    - `timeout`: truncated after 240 steps (12 s). In `pattern` control every step terminates;
+      the `TimeLimit` of `BabbleReachPattern-v0`, one step, truncates it as well.
 
     ## Info
 

@@ -61,7 +61,9 @@ class Window:
             try:
                 return self._window.get_surface()
             except self._pygame.error:
-                pass
+                # Freed before the next one opens: SDL may give that one the same address, and its
+                # end would then destroy it.
+                self._window = None
         pygame = self._pygame
         pygame.display.init()
         self._window = pygame.Window("gym-babble", self._size)

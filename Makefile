@@ -144,12 +144,13 @@ $(STAMPS)/extension: $(STAMPS)/dependencies $(EXTENSION_SOURCES)
 	env -u CONDA_PREFIX VIRTUAL_ENV='$(CURDIR)/$(VENV)' $(BIN)/maturin develop --release --features toy
 	@touch $@
 
-# The package as users install it, a wheel, beside what each set of frameworks pins.
+# The package as users install it, a wheel, beside what each set of frameworks pins. uv downloads a Python
+# 3.12 if none is here.
 $(FRAMEWORKS)/wheel: $(STAMPS)/extension $(shell find gym_babble -name '*.py')
 	rm -rf $@
 	$(BIN)/maturin build --release --out $@
 
 $(FRAMEWORKS)/%/installed: .ci/frameworks-%.txt $(FRAMEWORKS)/wheel
-	$(BIN)/uv venv --quiet --allow-existing --python 3.12 $(@D)
+	$(BIN)/uv venv --quiet --allow-existing --python "$$(source .ci/machine.sh; python_of 3.12 || echo 3.12)" $(@D)
 	$(BIN)/uv pip install --quiet --python $(@D)/bin/python --reinstall-package gym-babble -r $< $(FRAMEWORKS)/wheel/*.whl
 	@touch $@

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from gym_babble.cli import main
 from gym_babble.paper.table2 import TableTwo, table2
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -29,3 +30,16 @@ def table_two() -> TableTwo:
 def repository() -> Path:
     """The root of the checkout."""
     return ROOT
+
+
+@pytest.fixture
+def run(capsys):
+    """Runs the command line; gives exit code, stdout and stderr."""
+
+    def run(*words):
+        with pytest.raises(SystemExit) as ended:
+            main([str(word) for word in words])
+        printed = capsys.readouterr()
+        return ended.value.code, printed.out, printed.err
+
+    return run

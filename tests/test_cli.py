@@ -19,26 +19,12 @@ from gym_babble import (
     export_urdf,
     scenarios,
 )
-from gym_babble.cli import main
 from gym_babble.envs.registry import TASKS
 from gym_babble.study import learning
 from gym_babble.study.ppo import train_ppo
 from gym_babble.study.tasks import GRASP, REACH
 
 MOVEMENTS = "500"
-
-
-@pytest.fixture
-def run(capsys):
-    """Runs the command line; gives exit code, stdout and stderr."""
-
-    def run(*words):
-        with pytest.raises(SystemExit) as ended:
-            main([str(word) for word in words])
-        printed = capsys.readouterr()
-        return ended.value.code, printed.out, printed.err
-
-    return run
 
 
 @pytest.fixture

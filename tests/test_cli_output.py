@@ -13,7 +13,6 @@ from rich.console import Console
 
 from gym_babble import HebbBabbling, Random
 from gym_babble.agents.loading import named_agent
-from gym_babble.cli import main
 from gym_babble.study.tables import plain_table, stacked
 
 QUICK = ["--movements", "20", "--quasi-static"]
@@ -23,19 +22,6 @@ QUICK = ["--movements", "20", "--quasi-static"]
 def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-@pytest.fixture
-def run(capsys):
-    """Runs the command line; gives exit code, stdout and stderr."""
-
-    def run(*words):
-        with pytest.raises(SystemExit) as ended:
-            main([str(word) for word in words])
-        printed = capsys.readouterr()
-        return ended.value.code, printed.out, printed.err
-
-    return run
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,6 @@ import sys
 import pytest
 
 from gym_babble import HebbBabbling
-from gym_babble.cli import main
 from gym_babble.errors import ConfigError
 from gym_babble.files import write
 
@@ -53,19 +52,6 @@ LONG = ("table2", "fig7", "fig8")
 
 def names_of(commands):
     return [pytest.param(c, marks=pytest.mark.slow) if c in LONG else c for c in commands]
-
-
-@pytest.fixture
-def run(capsys):
-    """Runs the command line; gives exit code, stdout and stderr."""
-
-    def run(*words):
-        with pytest.raises(SystemExit) as ended:
-            main([str(word) for word in words])
-        printed = capsys.readouterr()
-        return ended.value.code, printed.out, printed.err
-
-    return run
 
 
 def name_of(command):

@@ -5,6 +5,7 @@ Called with a name in ENVIRONMENTS, by that environment's Python: `make framewor
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
@@ -50,7 +51,9 @@ def main() -> None:
             with tempfile.TemporaryDirectory() as folder:
                 # rl-zoo3 reads its settings from the repository.
                 (Path(folder) / "examples").symlink_to(ROOT / "examples")
-                subprocess.run(command, cwd=folder, check=True)
+                # Minari keeps datasets in the home folder, and refuses to write one twice.
+                env = {**os.environ, "MINARI_DATASETS_PATH": folder}
+                subprocess.run(command, cwd=folder, check=True, env=env)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,49 @@
+"""Trains agents that learn by babbling, in babbles that can be learnt from."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from gym_babble.study.trainers.base import Cost
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from gym_babble.agents.acting import EnvArguments
+
+__all__ = ["BabblingTrainer"]
+
+PIECE = {"reach": 50, "grasp": 10}
+"""Babbles to learn from between two pauses, by task. What is learnt does not depend on it."""
+
+
+class BabblingTrainer:
+    """Trains an agent with `learn(babbles)`, `babbled`, `learnt` and `steps_per_babble`.
+
+    Args:
+        agent: The agent.
+        arguments: Where it acts.
+    """
+
+    def __init__(self, agent: Any, arguments: EnvArguments) -> None:
+        self.agent, self.arguments = agent, arguments
+        self._piece = PIECE[arguments.task]
+
+    @property
+    def cost(self) -> Cost:
+        """The cost of learning so far."""
+        return Cost(
+            trials=self.agent.babbled,
+            accepted=self.agent.learnt,
+            control_steps=self.agent.babbled * self.agent.steps_per_babble,
+        )
+
+    def train(self, control_steps: int, pause: Callable[[], None]) -> None:
+        """Babbles until at least so many control steps have been used in all."""
+        while self.cost.control_steps < control_steps:
+            self.agent.learn(self._piece)
+            pause()
+
+    def save(self) -> tuple[str, bytes] | None:
+        """The agent's file."""
+        return ".safetensors", self.agent.to_bytes()

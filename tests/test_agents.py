@@ -133,6 +133,7 @@ def test_the_state_follows_episode_starts():
 def test_saved_agents_come_back(learnt, tmp_path):
     path = tmp_path / "agent.safetensors"
     learnt.save(path)
+    assert path.read_bytes() == learnt.to_bytes()
     again = load_agent(path)
     assert_same(again.weights, learnt.weights)
     assert again.brain == learnt.brain

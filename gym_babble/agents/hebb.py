@@ -185,6 +185,10 @@ class HebbBabbling(Planner):
             raise ConfigError(f"recall takes one observation, got {len(senses)}")
         return self._core.recall(senses)
 
+    def to_bytes(self) -> bytes:
+        """The bytes of the file that `save` writes."""
+        return self._core.save()
+
     def save(self, path: str | Path) -> None:
         """Writes the agent: weights as safetensors, all else as JSON in its metadata.
 
@@ -194,7 +198,7 @@ class HebbBabbling(Planner):
         Raises:
             OSError: The file cannot be written; an earlier one is whole.
         """
-        write_file(path, self._core.save())
+        write_file(path, self.to_bytes())
 
     @classmethod
     def load(

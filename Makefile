@@ -105,7 +105,7 @@ microbench: setup ## Measure parts: criterion in Rust, pytest-benchmark in Pytho
 	cargo bench
 	$(BIN)/python -m pytest -o python_files='bench_*.py' --benchmark-only
 
-frameworks: $(foreach set,$(FRAMEWORK_SETS),$(FRAMEWORKS)/$(set)/installed) ## Run the snippets of docs/frameworks.md in environments of their own (8 GB)
+frameworks: $(foreach set,$(FRAMEWORK_SETS),$(FRAMEWORKS)/$(set)/installed) ## Run the snippets of docs/frameworks.md in environments of their own (12 GB)
 	$(foreach set,$(FRAMEWORK_SETS),$(FRAMEWORKS)/$(set)/bin/python .ci/frameworks.py $(set) &&) true
 	$(FRAMEWORKS)/rllib/bin/python examples/rllib_ppo.py
 

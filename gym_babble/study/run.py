@@ -14,6 +14,7 @@ from gym_babble.agents.loading import LoadedAgent
 from gym_babble.envs.registry import task_entry
 from gym_babble.errors import BabbleError, ConfigError
 from gym_babble.study.evaluation import play_cases
+from gym_babble.study.paths import SHOWN_CASES, hand_paths
 from gym_babble.study.roster import RosterAgent, roster_agent, trainer_for
 from gym_babble.study.scenarios import scenarios
 from gym_babble.study.spec import Study, StudyAgent, StudyTask
@@ -216,6 +217,7 @@ def _results(
         "cost": recorder.cost(),
         "checkpoints": recorder.checkpoints,
         "test": stored_test(test),
+        "paths": hand_paths(LoadedAgent(trainer.agent, trainer.arguments), cases[:SHOWN_CASES]),
     }
     return results, trainer.save()
 

@@ -68,7 +68,7 @@ ROSTER = {
         title="Hebb paper",
         trainer="babbling:hebb",
         tasks={
-            "reach": Place(PATTERN, 22_400_000, (GENERATORS,)),
+            "reach": Place(PATTERN, 24_400_000, (GENERATORS,)),
             "grasp": Place(GRASP, 160_000, (REFLEX, IN_HAND)),
         },
         sees="obstacle; eye and fovea",
@@ -76,7 +76,7 @@ ROSTER = {
     "hebb-conjunctive": RosterAgent(
         title="Hebb conjunctive",
         trainer="babbling:hebb",
-        tasks={"reach": Place(PATTERN, 22_400_000, (GENERATORS,))},
+        tasks={"reach": Place(PATTERN, 24_400_000, (GENERATORS,))},
         sees="obstacle × eye",
         settings={"variant": "conjunctive"},
     ),

@@ -17,6 +17,7 @@ from gym_babble.cli.info import info
 from gym_babble.cli.list import list_environments
 from gym_babble.cli.render import render
 from gym_babble.cli.reproduce import reproduce
+from gym_babble.cli.study import study
 from gym_babble.errors import BabbleError, MissingExtraError
 
 __all__ = ["app", "main"]
@@ -31,6 +32,7 @@ app.command("list")(list_environments)
 for command in (info, babble, evaluate, compare, render, export, doctor):
     app.command()(command)
 app.add_typer(reproduce, name="reproduce")
+app.add_typer(study, name="study")
 
 # The base class of typer's complaints about arguments; its name differs between versions.
 UsageError: Any = typer.BadParameter.__bases__[0]

@@ -1,12 +1,10 @@
 """`gym-babble doctor`: what is installed, whether the core computes correctly, and how fast."""
 
 import platform
-from hashlib import blake2b
 from time import perf_counter
 from typing import Any
 
 import gymnasium
-import numpy as np
 import typer
 from rich.table import Table
 from rich.text import Text
@@ -16,11 +14,11 @@ from gym_babble.checks import processors
 from gym_babble.cli.arguments import AsJson
 from gym_babble.cli.output import print_json, print_results
 from gym_babble.config import Config
-from gym_babble.envs import BabbleGraspEnv, BabbleGraspVectorEnv, BabbleReachEnv
+from gym_babble.envs import BabbleGraspVectorEnv
 from gym_babble.study.tables import plain_table
-from gym_babble.study.versions import EXTRAS, versions
+from gym_babble.study.versions import EXTRAS, state_hash, versions
 
-__all__ = ["STATE_HASH", "doctor", "examine", "state_hash"]
+__all__ = ["STATE_HASH", "doctor", "examine"]
 
 GRASP_STEPS = 20
 """Steps of each random grasp."""
@@ -58,19 +56,6 @@ def examine() -> dict[str, Any]:
         "step_us": _time_single(),
         "step_in_batch_of_64_us": _time_batch(),
     }
-
-
-def state_hash() -> int:
-    """Hash of both tasks' states after 20 steps of seed 0; the same on every machine."""
-    digest = blake2b(digest_size=8)
-    for env in (BabbleReachEnv(), BabbleGraspEnv(control="posture")):
-        env.reset(seed=0)
-        width = len(env.action_space.sample())
-        for step in range(20):
-            action = np.array([0.1 * (step % 7) - 0.3, *[0.25] * (width - 1)], np.float32)
-            env.step(action)
-        digest.update(env.state_hash().to_bytes(8, "little"))
-    return int.from_bytes(digest.digest(), "little")
 
 
 def _unconverged() -> int:

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import platform
 import re
+from functools import cache
+from hashlib import blake2b
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+import numpy as np
+
 from gym_babble._core import __version__
 from gym_babble.checks import processors
+from gym_babble.envs import BabbleGraspEnv, BabbleReachEnv
 
-__all__ = ["EXTRAS", "machine", "versions"]
+__all__ = ["EXTRAS", "code_hash", "machine", "physics_hash", "state_hash", "versions"]
 
 EXTRAS = {
     "sb3": ("stable-baselines3", "torch"),
@@ -54,3 +59,32 @@ def _processor() -> str:
         told = ""
     names = re.findall(r"model name\s*:\s*(.+)", told)
     return str(names[0]) if names else platform.processor()
+
+
+def state_hash() -> int:
+    """Hash of both tasks' states after 20 steps of seed 0; the same on every machine."""
+    digest = blake2b(digest_size=8)
+    for env in (BabbleReachEnv(), BabbleGraspEnv(control="posture")):
+        env.reset(seed=0)
+        width = len(env.action_space.sample())
+        for step in range(20):
+            action = np.array([0.1 * (step % 7) - 0.3, *[0.25] * (width - 1)], np.float32)
+            env.step(action)
+        digest.update(env.state_hash().to_bytes(8, "little"))
+    return int.from_bytes(digest.digest(), "little")
+
+
+@cache
+def physics_hash() -> str:
+    """`state_hash` in hexadecimal: the same for the same physics."""
+    return f"{state_hash():016x}"
+
+
+@cache
+def code_hash() -> str:
+    """Hash of this package's Python sources."""
+    root = Path(__file__).parent.parent
+    digest = blake2b(digest_size=8)
+    for path in sorted(root.rglob("*.py")):
+        digest.update(path.relative_to(root).as_posix().encode() + path.read_bytes())
+    return digest.hexdigest()

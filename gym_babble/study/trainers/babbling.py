@@ -4,17 +4,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from gym_babble.study.trainers.base import Cost
+from gym_babble.agents import HebbBabbling
+from gym_babble.study.trainers.base import Cost, arguments_of, check_settings
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from gym_babble.agents.acting import EnvArguments
+    from gym_babble.study.trainers.base import Order
 
-__all__ = ["BabblingTrainer"]
+__all__ = ["BabblingTrainer", "hebb"]
 
-PIECE = {"reach": 50, "grasp": 10}
+PIECE = {"reach": 10, "grasp": 5}
 """Babbles to learn from between two pauses, by task. What is learnt does not depend on it."""
+
+ACTS_IN = {"reach": "BabbleReachPattern-v0", "grasp": "BabbleGrasp-v0"}
 
 
 class BabblingTrainer:
@@ -47,3 +51,11 @@ class BabblingTrainer:
     def save(self) -> tuple[str, bytes] | None:
         """The agent's file."""
         return ".safetensors", self.agent.to_bytes()
+
+
+def hebb(order: Order) -> BabblingTrainer:
+    """The paper's agent; its settings are `variant`, `rule` and `brain` of `HebbBabbling`."""
+    settings = check_settings(order, ("variant", "rule", "brain"))
+    arguments = arguments_of(order, ACTS_IN[order.task])
+    agent = HebbBabbling(arguments.single(), seed=order.seed, threads=1, **settings)
+    return BabblingTrainer(agent, arguments)

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import difflib
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol
 
 from gym_babble.agents.acting import arguments_for
+from gym_babble.errors import ConfigError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Collection
 
     from gym_babble.agents.acting import EnvArguments
     from gym_babble.agents.base import Agent
     from gym_babble.config import ConfigLike
 
-__all__ = ["Cost", "Order", "Trainer", "arguments_of"]
+__all__ = ["Cost", "Order", "Trainer", "arguments_of", "check_settings"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,3 +89,18 @@ def arguments_of(order: Order, env_id: str) -> EnvArguments:
         ConfigError: An unknown id, option or config.
     """
     return arguments_for(None, order.env_id or env_id, order.config, order.options)
+
+
+def check_settings(order: Order, known: Collection[str]) -> dict[str, Any]:
+    """The settings of an order.
+
+    Raises:
+        ConfigError: One is unknown.
+    """
+    for name in order.settings:
+        if name not in known:
+            near = difflib.get_close_matches(name, known, 1)
+            meant = f"; did you mean {near[0]!r}?" if near else ""
+            there = f"there are {', '.join(known)}" if known else "there are none"
+            raise ConfigError(f"settings.{name}: unknown setting; {there}{meant}")
+    return order.settings

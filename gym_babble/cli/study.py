@@ -1,0 +1,139 @@
+"""`gym-babble study`."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from threading import Lock
+from typing import Annotated, Any
+
+import typer
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from gym_babble.cli.output import messages, print_results, say
+from gym_babble.study.engine import run_study
+from gym_babble.study.results import task_table
+from gym_babble.study.run import RunSpec, runs_of
+from gym_babble.study.spec import Study, read_study
+from gym_babble.study.specs import SPECS
+from gym_babble.study.store import Store, StoredRun
+from gym_babble.study.tables import plain_table
+
+__all__ = ["StudyBar", "run_with_bar", "study"]
+
+study = typer.Typer(help="Run, resume and report a study.", no_args_is_help=True)
+
+Jobs = Annotated[
+    int | None, typer.Option(min=1, help="Runs at a time. Default: one for each processor.")
+]
+
+
+class StudyBar:
+    """Shows on stderr how a study goes on, with the time left."""
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        self._shares: dict[str, float] = {}
+        self._ended = 0
+        self.failed = 0
+        columns = (
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TextColumn("{task.percentage:>3.0f} %"),
+            TimeElapsedColumn(),
+            TextColumn("left"),
+            TimeRemainingColumn(),
+        )
+        self._bar = Progress(*columns, console=messages)
+
+    def begin(self, waiting: Sequence[RunSpec], done: int, unfit: Sequence[str]) -> None:
+        """Says what there is, and shows the bar."""
+        for sentence in unfit:
+            say(f"does not fit the study, left out: {sentence}")
+        if done:
+            say(f"{done} runs are finished already")
+        self._weights = {spec.name: 1 + spec.budget for spec in waiting}
+        self._task = self._bar.add_task(f"{len(waiting)} runs", total=sum(self._weights.values()))
+        self._bar.start()
+
+    def progress(self, spec: RunSpec, share: float) -> None:
+        """Moves the bar."""
+        with self._lock:
+            self._shares[spec.name] = share
+            done = sum(self._weights[name] * share for name, share in self._shares.items())
+            self._bar.update(self._task, completed=done)
+
+    def end(self, spec: RunSpec, record: dict[str, Any]) -> None:
+        """Prints how a run ended."""
+        self.progress(spec, 1.0)
+        if record["status"] == "failed":
+            self.failed += 1
+            say(f"{spec.name}: failed: {record['error']}")
+        else:
+            test = record["test"]
+            hits = test["outcome"].count(str(test["outcomes"].index("success")))
+            say(f"{spec.name}: success {hits / len(test['outcome']):.3f}")
+
+    def close(self) -> None:
+        """Removes the bar."""
+        self._bar.stop()
+
+
+def run_with_bar(study: Study, folder: Path, jobs: int | None) -> Store:
+    """Runs what is missing of a study, and shows how it goes on."""
+    bar = StudyBar()
+    try:
+        return run_study(study, folder, bar, jobs=jobs)
+    finally:
+        bar.close()
+
+
+@study.command("run")
+def run(
+    spec: Annotated[
+        str, typer.Argument(help="TOML or JSON file, or a name that `study list` shows.")
+    ],
+    *,
+    folder: Annotated[Path, typer.Option("--out", help="Folder of the study.")],
+    jobs: Jobs = None,
+) -> None:
+    """Run a study, or what is missing of it: each finished run is stored at once."""
+    _run(read_study(spec), folder, jobs)
+
+
+@study.command("resume")
+def resume(
+    folder: Annotated[Path, typer.Argument(help="Folder of the study.")], *, jobs: Jobs = None
+) -> None:
+    """Go on with the study in a folder."""
+    _run(Store(folder).study(), folder, jobs)
+
+
+@study.command("show")
+def show(folder: Annotated[Path, typer.Argument(help="Folder of the study.")]) -> None:
+    """Print the tables of a study, as far as it has come."""
+    store = Store(folder)
+    found = store.study()
+    _print(found, store.runs())
+
+
+@study.command("list")
+def list_studies() -> None:
+    """List the studies that come with the package."""
+    table = plain_table(None, ["study", "title", "tasks", "agents", "runs"], left=3)
+    for name in SPECS:
+        found = read_study(name)
+        many = str(len(found.agents)), str(len(runs_of(found)))
+        table.add_row(name, found.title, ", ".join(found.tasks), *many)
+    print_results(table)
+
+
+def _run(study: Study, folder: Path, jobs: int | None) -> None:
+    store = run_with_bar(study, folder, jobs)
+    runs = store.runs(runs_of(study))
+    _print(study, runs)
+    if not all(run.finished for run in runs):
+        raise typer.Exit(1)
+
+
+def _print(study: Study, runs: Sequence[StoredRun]) -> None:
+    for name in study.tasks:
+        print_results(task_table(study, runs, name))

@@ -1,0 +1,154 @@
+"""The agents of studies by name: how each learns, what it sees and what it knows beforehand.
+
+To add one, write its trainer in a file and add its line here. An agent of your own needs no line:
+a study takes "module:Class".
+"""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from gym_babble.errors import ConfigError
+from gym_babble.study.trainers.own import own_trainer
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from gym_babble.study.trainers.base import Order, Trainer
+
+__all__ = ["ROSTER", "Place", "RosterAgent", "roster_agent", "trainer_for"]
+
+PATTERN, REACH, GRASP = "BabbleReachPattern-v0", "BabbleReach-v0", "BabbleGrasp-v0"
+
+REFLEX = "enclosure reflex"
+IN_HAND = "objects placed in the hand"
+GEOMETRY = "body geometry"
+SIMULATOR = "the simulator"
+GENERATORS = "movement patterns"
+
+
+class Place(NamedTuple):
+    """Where an agent learns a task, and how long."""
+
+    env_id: str
+    budget: int
+    """Control steps to learn from; 0 if it does not learn."""
+    knows: tuple[str, ...] = ()
+    """What it knows or has before it learns."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RosterAgent:
+    """An agent that a study can name."""
+
+    title: str
+    trainer: str
+    """Its trainer, "module:function" in `gym_babble.study.trainers`; the function takes an
+    `Order`."""
+    tasks: Mapping[str, Place]
+    """The tasks that it can do."""
+    sees: str
+    """What it decides from."""
+    options: Mapping[str, Any] = field(default_factory=dict)
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    seeded: bool = True
+    """Whether it depends on the seed; if not, one run is enough."""
+
+    @property
+    def learns(self) -> bool:
+        """Whether it learns."""
+        return any(place.budget for place in self.tasks.values())
+
+
+ROSTER = {
+    "hebb-paper": RosterAgent(
+        title="Hebb paper",
+        trainer="babbling:hebb",
+        tasks={
+            "reach": Place(PATTERN, 24_400_000, (GENERATORS,)),
+            "grasp": Place(GRASP, 160_000, (REFLEX, IN_HAND)),
+        },
+        sees="obstacle; eye and fovea",
+    ),
+    "hebb-conjunctive": RosterAgent(
+        title="Hebb conjunctive",
+        trainer="babbling:hebb",
+        tasks={"reach": Place(PATTERN, 24_400_000, (GENERATORS,))},
+        sees="obstacle × eye",
+        settings={"variant": "conjunctive"},
+    ),
+    "random": RosterAgent(
+        title="Random",
+        trainer="still:reference",
+        tasks={"reach": Place(PATTERN, 0, (GENERATORS,)), "grasp": Place(GRASP, 0)},
+        sees="nothing",
+        settings={"name": "random"},
+    ),
+    "scripted": RosterAgent(
+        title="Scripted",
+        trainer="still:reference",
+        tasks={
+            "reach": Place(PATTERN, 0, (GENERATORS, GEOMETRY)),
+            "grasp": Place(GRASP, 0, (REFLEX, GEOMETRY)),
+        },
+        sees="all",
+        settings={"name": "scripted"},
+        seeded=False,
+    ),
+    "oracle": RosterAgent(
+        title="Oracle",
+        trainer="still:reference",
+        tasks={
+            "reach": Place(PATTERN, 0, (GENERATORS, GEOMETRY, SIMULATOR)),
+            "grasp": Place(GRASP, 0, (GEOMETRY, SIMULATOR)),
+        },
+        sees="all",
+        settings={"name": "oracle"},
+        seeded=False,
+    ),
+}
+"""The agents by name."""
+
+
+def roster_agent(name: str) -> RosterAgent | None:
+    """The roster's agent of a name; None for a file or "module:Class".
+
+    Raises:
+        ConfigError: There is no such agent.
+    """
+    if name in ROSTER:
+        return ROSTER[name]
+    if any(letter in name for letter in ":./\\"):
+        return None
+    near = difflib.get_close_matches(name, ROSTER, 1)
+    meant = f"; did you mean {near[0]!r}?" if near else ""
+    raise ConfigError(
+        f"agent = {name!r} is not one of {', '.join(ROSTER)}, nor a file, nor module:Class{meant}"
+    )
+
+
+def trainer_for(name: str, order: Order) -> Trainer:
+    """The trainer of an agent by name, from a file, or of "module:Class".
+
+    Raises:
+        ConfigError: There is no such agent or setting, or it cannot do what is ordered.
+        FileNotFoundError: There is no such file.
+        MissingExtraError: The trainer needs an extra that is not installed.
+    """
+    entry = roster_agent(name)
+    if entry is None:
+        return own_trainer(name, order)
+    if order.task not in entry.tasks:
+        raise ConfigError(f"agent = {name!r} has no form for {order.task}ing")
+    module, _, function = entry.trainer.partition(":")
+    make = getattr(importlib.import_module(f"gym_babble.study.trainers.{module}"), function)
+    complete = replace(
+        order,
+        env_id=order.env_id or entry.tasks[order.task].env_id,
+        options={**entry.options, **order.options},
+        settings={**entry.settings, **order.settings},
+    )
+    return make(complete)  # type: ignore[no-any-return]

@@ -1,5 +1,6 @@
 """`gym-babble study`."""
 
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 from threading import Lock
@@ -8,7 +9,9 @@ from typing import Annotated, Any
 import typer
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from gym_babble.cli.output import messages, print_results, say
+from gym_babble.cli.output import messages, name_files, print_results, say
+from gym_babble.files import check_folder
+from gym_babble.report.writing import REPORT_FILES, write_report
 from gym_babble.study.engine import run_study
 from gym_babble.study.results import task_table
 from gym_babble.study.run import RunSpec, runs_of
@@ -113,6 +116,18 @@ def show(folder: Annotated[Path, typer.Argument(help="Folder of the study.")]) -
     store = Store(folder)
     found = store.study()
     _print(found, store.runs())
+
+
+@study.command("report")
+def report(
+    folder: Annotated[Path, typer.Argument(help="Folder of the study.")],
+    *,
+    out: Annotated[Path, typer.Option(help="Folder for the page, its numbers and charts.")],
+) -> None:
+    """Write a study as a page, with its numbers as JSON and CSV and its charts as SVG."""
+    check_folder(out, "--out", REPORT_FILES)
+    command = shlex.join(["gym-babble", "study", "report", str(folder), "--out", str(out)])
+    name_files(write_report(Store(folder), out, command))
 
 
 @study.command("list")

@@ -107,6 +107,7 @@ microbench: setup ## Measure parts: criterion in Rust, pytest-benchmark in Pytho
 
 frameworks: $(foreach set,$(FRAMEWORK_SETS),$(FRAMEWORKS)/$(set)/installed) ## Run the snippets of docs/frameworks.md in environments of their own (12 GB)
 	$(foreach set,$(FRAMEWORK_SETS),$(FRAMEWORKS)/$(set)/bin/python .ci/frameworks.py $(set) &&) true
+	$(FRAMEWORKS)/learners/bin/python .ci/rl_zoo3_settings.py
 	$(FRAMEWORKS)/rllib/bin/python examples/rllib_ppo.py
 
 constraints: $(STAMPS)/dependencies ## Pin the newest releases that pyproject.toml allows, for every Python and platform

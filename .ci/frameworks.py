@@ -30,29 +30,22 @@ def section(text: str, name: str) -> str:
 
 
 def commands(name: str) -> list[list[str]]:
-    """What to run for a section: its Python, and its commands by this Python."""
+    """What to run for a section: its Python by this Python, and its commands with it."""
     text = section((ROOT / "docs" / "frameworks.md").read_text(encoding="utf-8"), name)
     blocks = re.findall(r"^```(python|sh)\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
-    found = []
-    for language, code in blocks:
-        if language == "python":
-            found.append([sys.executable, "-c", code])
-        else:
-            lines = code.replace("\\\n", " ").splitlines()
-            found += [[sys.executable, *line.split()[1:]] for line in lines]
-    return found
+    runners = {"python": (sys.executable, "-c"), "sh": ("bash", "-ec")}
+    return [[*runners[language], code] for language, code in blocks]
 
 
 def main() -> None:
     """Runs the sections one after the other, and stops at the first that fails."""
+    path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
     for name in ENVIRONMENTS[sys.argv[1]]:
         print(f"== {name}", flush=True)
         for command in commands(name):
             with tempfile.TemporaryDirectory() as folder:
-                # rl-zoo3 reads its settings from the repository.
-                (Path(folder) / "examples").symlink_to(ROOT / "examples")
                 # Minari keeps datasets in the home folder, and refuses to write one twice.
-                env = {**os.environ, "MINARI_DATASETS_PATH": folder}
+                env = {**os.environ, "MINARI_DATASETS_PATH": folder, "PATH": path}
                 subprocess.run(command, cwd=folder, check=True, env=env)
 
 

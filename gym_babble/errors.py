@@ -9,6 +9,7 @@ __all__ = [
     "BabbleError",
     "BusyError",
     "ConfigError",
+    "DivergedError",
     "MissingExtraError",
     "ScenarioError",
     "SnapshotError",
@@ -46,6 +47,10 @@ class AgentFileError(BabbleError, ValueError):
 
 class StudyError(BabbleError, ValueError):
     """A stored study does not fit what is compared."""
+
+
+class DivergedError(BabbleError, ArithmeticError):
+    """An agent's weights became NaN or infinite while it learnt."""
 
 
 class MissingExtraError(BabbleError, ImportError):

@@ -14,14 +14,18 @@ from typing import TYPE_CHECKING, Any
 
 import gymnasium
 import numpy as np
+from gymnasium import spaces
 from gymnasium.vector import AutoresetMode
 
+from gym_babble.checks import check_choice
 from gym_babble.errors import ConfigError, MissingExtraError
 from gym_babble.progress import track
 
 try:
+    import torch
     from stable_baselines3.common.callbacks import BaseCallback
     from stable_baselines3.common.monitor import Monitor
+    from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
     from stable_baselines3.common.vec_env import VecEnv
 except ImportError as error:
     raise MissingExtraError("stable-baselines3", "sb3") from error
@@ -36,7 +40,7 @@ if TYPE_CHECKING:
         VecEnvStepReturn,
     )
 
-__all__ = ["BabbleVecEnv", "ProgressBar"]
+__all__ = ["BabbleVecEnv", "ChosenSenses", "ProgressBar"]
 
 
 class BabbleVecEnv(VecEnv):
@@ -179,6 +183,36 @@ class BabbleVecEnv(VecEnv):
                 f"{name}: single environments cannot {name}; use that of the batch"
             )
         return self.envs.of_one(i, name)
+
+
+class ChosenSenses(BaseFeaturesExtractor):
+    """A features extractor that passes only some senses to the networks.
+
+    >>> extractor = {
+    ...     "features_extractor_class": ChosenSenses,
+    ...     "features_extractor_kwargs": {"senses": ["obstacle"]},
+    ... }
+    >>> env = BabbleVecEnv("BabbleReachPattern-v0")
+    >>> model = PPO("MultiInputPolicy", env, policy_kwargs=extractor)
+
+    Raises:
+        ConfigError: No senses, or one that the observation does not have.
+    """
+
+    def __init__(self, observation_space: spaces.Dict, senses: Sequence[str]) -> None:
+        if not isinstance(observation_space, spaces.Dict):
+            raise ConfigError('senses: the observation has no named senses; use obs="senses"')
+        for name in senses:
+            check_choice("senses", name, observation_space)
+        if not senses:
+            raise ConfigError("senses is empty: it must have at least one")
+        width = sum(spaces.flatdim(observation_space[name]) for name in senses)
+        super().__init__(observation_space, width)
+        self._senses = tuple(senses)
+
+    def forward(self, observations: dict[str, torch.Tensor]) -> torch.Tensor:
+        """The chosen senses of a batch of observations, concatenated (n, width)."""
+        return torch.cat([observations[name] for name in self._senses], dim=1)
 
 
 class ProgressBar(BaseCallback):

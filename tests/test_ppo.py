@@ -104,7 +104,7 @@ def test_bad_arguments(arguments, named):
 @pytest.mark.parametrize("name", ["pattern", "delta_posture", "grasp"])
 def test_the_settings_for_rl_zoo3_are_the_presets(repository, name):
     preset = PRESETS[name]
-    text = (repository / "examples" / "rl_zoo3" / "ppo.yml").read_text(encoding="utf-8")
+    text = (repository / "gym_babble" / "study" / "tuned" / "ppo.yml").read_text(encoding="utf-8")
     block = re.search(rf"^{preset.env_id}:\n((?:  .+\n)+)", text, re.MULTILINE)[1]
     found = dict(line.strip().split(": ", 1) for line in block.splitlines())
     numbers = {

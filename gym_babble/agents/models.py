@@ -20,6 +20,14 @@ if TYPE_CHECKING:
 __all__ = ["NormalizedModel", "fitted", "is_model", "load_model", "load_normalizer"]
 
 
+WITHOUT_REPLAY: dict[str, Any] = {
+    "replay_buffer_class": None,
+    "replay_buffer_kwargs": {},
+    "buffer_size": 1,
+}
+"""What a model that only acts is loaded with. One of hindsight replay needs no environment then."""
+
+
 class NormalizedModel:
     """A model that sees observations normalized, as `VecNormalize` did while it learnt."""
 
@@ -149,7 +157,7 @@ def load_model(path: Path) -> Any:
     torch.set_num_threads(1)  # These networks are too small for a second one to help.
     algorithm = getattr(stable_baselines3, _algorithm(path))
     try:
-        return algorithm.load(path, device="cpu")
+        return algorithm.load(path, device="cpu", custom_objects=WITHOUT_REPLAY)
     except Exception as error:  # Unpickling can raise anything.
         raise AgentFileError(f"{path}: {error}") from error
 

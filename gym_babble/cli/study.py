@@ -127,6 +127,7 @@ def report(
     """Write a study as a page, with its numbers as JSON and CSV and its charts as SVG."""
     check_folder(out, "--out", REPORT_FILES)
     command = shlex.join(["gym-babble", "study", "report", str(folder), "--out", str(out)])
+    say("writing the report")
     name_files(write_report(Store(folder), out, command))
 
 

@@ -4,7 +4,7 @@ for (const table of document.querySelectorAll("table.sorts")) {
   const body = table.tBodies[0];
   const value = (row, column) => {
     const cell = row.cells[column];
-    const said = cell.dataset.v ?? cell.textContent.trim();
+    const said = cell?.dataset.v ?? cell?.textContent.trim() ?? "";
     return said === "" ? null : Number.isNaN(Number(said)) ? said : Number(said);
   };
   const compare = (a, b) =>

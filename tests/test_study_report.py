@@ -14,6 +14,7 @@ pytest.importorskip("jinja2", reason="the wheel's tests install no extra")
 pytest.importorskip("matplotlib", reason="the wheel's tests install no extra")
 pytest.importorskip("scipy", reason="the wheel's tests install no extra")
 
+from gym_babble.report.rendering import count, seconds
 from gym_babble.report.writing import REPORT_FILES, write_report
 from gym_babble.study.rates import share
 from gym_babble.study.run import execute, runs_of
@@ -210,6 +211,48 @@ def test_the_same_store_is_the_same_report(store, report, tmp_path):
     written = {path.name: path.read_text(encoding="utf-8") for path in tmp_path.iterdir()}
     assert written.pop("mine.svg")
     assert written == report
+
+
+def test_a_study_that_has_not_begun_has_a_report_too(tmp_path):
+    made = Store(tmp_path / "study")
+    made.open(study_of(SPEC))
+    (page, *_) = write_report(made, tmp_path / "report", "")
+    text = page.read_text(encoding="utf-8")
+    assert "No run of this study is finished yet." in text
+    assert "7 runs missing" in text
+    Page(text)
+
+
+@pytest.mark.slow
+def test_a_report_of_grasping_shows_sizes_hands_and_sight(tmp_path):
+    task = {"protocol": "palm_side", "cases": 12, "checkpoint_cases": 6, "budget": 4_000}
+    study = study_of({"name": "g", "tasks": {"grasp": task}, "agents": ["hebb-paper", "random"]})
+    made = Store(tmp_path / "study")
+    made.open(study)
+    for spec in runs_of(study):
+        made.write(spec, *execute(spec))
+    files = {path.name: path for path in write_report(made, tmp_path / "report", "")}
+    charts = {"hebb-paper.fig7", "hebb-paper.fig8", "sight", "case5"}
+    assert {f"grasp.{name}.svg" for name in charts} < set(files)
+    text = files["index.html"].read_text(encoding="utf-8")
+    Page(text)
+    for sentence in ("A grasp", "any touch", "Success by size", "objects placed in the hand"):
+        assert sentence in text
+    assert "the paper" not in text.partition("Citation")[0].replace("the paper's", "")
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"), [(950, "950"), (12_345, "12,300"), (1.2546e6, "1.25 M"), (3e9, "3 G")]
+)
+def test_counts_are_short(value, shown):
+    assert count(value) == shown
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"), [(0.123, "0.12 s"), (95.0, "95 s"), (720.0, "12 min"), (12_240.0, "3.4 h")]
+)
+def test_times_are_short(value, shown):
+    assert seconds(value) == shown
 
 
 def table(text: str) -> list[dict[str, str]]:

@@ -12,11 +12,12 @@ from gym_babble.report.charts import final_charts, learning_charts
 from gym_babble.report.citation import bibtex
 from gym_babble.report.data import AXES, tasks_of
 from gym_babble.report.document import document_of
-from gym_babble.report.rendering import drawn, page, picture
+from gym_babble.report.rendering import drawn, environment, page, picture
 from gym_babble.report.sections import sections_of
 from gym_babble.report.tables import TABLES, csv_tables, run_rows
+from gym_babble.study.statistics import scipy_stats
 from gym_babble.study.tasks import task_named
-from gym_babble.viz.style import svg
+from gym_babble.viz.style import check_format, svg
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -50,6 +51,7 @@ def write_report(store: Store, folder: Path, command: str) -> list[Path]:
         StudyError: A file of the store cannot be read.
         OSError: The files cannot be written; an earlier report is whole.
     """
+    _check_extras(folder)
     tasks = tasks_of(store)
     document = document_of(store, tasks)
     book = _Charts()
@@ -65,6 +67,13 @@ def write_report(store: Store, folder: Path, command: str) -> list[Path]:
     }
     stale = _files_of_earlier(folder) - files.keys()
     return write_files(folder, files, stale=sorted(stale))
+
+
+def _check_extras(folder: Path) -> None:
+    """Raises `MissingExtraError` now, and not when all charts are drawn."""
+    environment()
+    scipy_stats()
+    check_format(folder / "chart.svg")
 
 
 class _Charts:

@@ -72,7 +72,9 @@ LAYERS = (
     *("study", "viz", "paper", "report", "cli"),
 )
 
-HEAVY_MODULES = {"matplotlib", "pygame", "ray", "rich", "stable_baselines3", "torch", "typer"}
+HEAVY_MODULES = {
+    *("matplotlib", "pygame", "ray", "rich", "scipy", "stable_baselines3", "torch", "typer"),
+}
 
 
 @pytest.fixture(scope="module")

@@ -14,6 +14,7 @@ pytest.importorskip("jinja2", reason="the wheel's tests install no extra")
 pytest.importorskip("matplotlib", reason="the wheel's tests install no extra")
 pytest.importorskip("scipy", reason="the wheel's tests install no extra")
 
+from gym_babble.report.citation import bibtex
 from gym_babble.report.rendering import count, seconds
 from gym_babble.report.writing import REPORT_FILES, write_report
 from gym_babble.study.rates import share
@@ -221,6 +222,13 @@ def test_a_study_that_has_not_begun_has_a_report_too(tmp_path):
     assert "No run of this study is finished yet." in text
     assert "7 runs missing" in text
     Page(text)
+
+
+def test_a_report_is_cited_as_the_readme_says(repository, report):
+    readme = (repository / "README.md").read_text(encoding="utf-8")
+    entries = readme.partition("```bibtex\n")[2].partition("```")[0]
+    assert bibtex().split() == entries.split()
+    assert "Using motor babbling and {Hebb} rules" in report["index.html"]
 
 
 @pytest.mark.slow

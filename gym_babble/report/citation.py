@@ -7,14 +7,12 @@ from gym_babble._core import __version__
 __all__ = ["bibtex"]
 
 BIBTEX = """\
-@inproceedings{caligiore2008,
-  author    = {Caligiore, Daniele and Ferrauto, Tomassino and Parisi, Domenico and Accornero, Neri
-               and Capozza, Marco and Baldassarre, Gianluca},
-  title     = {Using motor babbling and {Hebb} rules for modeling the development of reaching with
-               obstacles and grasping},
-  booktitle = {International Conference on Cognitive Systems (CogSys 2008)},
-  address   = {Karlsruhe},
-  year      = {2008}
+@misc{caligiore2008,
+  author  = {Caligiore, Daniele and Ferrauto, Tomassino and Parisi, Domenico and Accornero, Neri and
+             Capozza, Marco and Baldassarre, Gianluca},
+  title   = {Using motor babbling and {Hebb} rules for modeling the development of reaching with
+             obstacles and grasping},
+  year    = {2008}
 }
 
 @software{gymbabble,

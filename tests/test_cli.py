@@ -21,8 +21,8 @@ from gym_babble import (
 )
 from gym_babble.envs.registry import TASKS
 from gym_babble.study import learning
-from gym_babble.study.ppo import train_ppo
 from gym_babble.study.tasks import GRASP, REACH
+from gym_babble.study.trainers.sb3 import train_tuned
 
 MOVEMENTS = "500"
 
@@ -226,15 +226,16 @@ def test_evaluate_prints_the_papers_rates_beside(run):
     assert "scripted" in printed
 
 
-@pytest.mark.parametrize(("preset", "task"), [("pattern", REACH), ("grasp", GRASP)])
-def test_evaluate_a_model_of_stable_baselines3(run, run_json, tmp_path, preset, task):
+@pytest.mark.parametrize(
+    ("env_id", "task"), [("BabbleReachPattern-v0", REACH), ("BabbleGrasp-v0", GRASP)]
+)
+def test_evaluate_a_model_of_stable_baselines3(run, run_json, tmp_path, env_id, task):
     path = tmp_path / "model.zip"
-    trained = train_ppo(preset, steps=1, validation_cases=0)
-    trained.agent.save(path)
+    train_tuned("ppo", env_id, steps=1).save(path)
     tested = run_json("evaluate", path, "--cases", 6)
     check_rates(tested, 6, task)
-    assert tested["env_id"] == trained.env_id
-    assert tested == run_json("evaluate", path, "--cases", 6, "--env-id", trained.env_id)
+    assert tested["env_id"] == env_id
+    assert tested == run_json("evaluate", path, "--cases", 6, "--env-id", env_id)
     PPO("MlpPolicy", "Pendulum-v1", device="cpu").save(path)
     where = ("--env-id", "BabbleReach-v0")
     code, _, told = run("evaluate", path, *where)

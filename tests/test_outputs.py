@@ -96,8 +96,6 @@ def test_a_file_that_cannot_be_written_is_found_before_learning(
         ("film.py", "--out"),
         ("learning_curves.py", "--out"),
         ("ppo_reach.py", "--save"),
-        ("ppo_study.py", "--out"),
-        ("ppo_study.py", "--pictures"),
     ],
     ids=" ".join,
 )

@@ -8,7 +8,8 @@ import numpy as np
 
 from gym_babble.agents.loading import acting_agent
 from gym_babble.report.agents import hebb_agents
-from gym_babble.viz.film import contact_sheet, png, record
+from gym_babble.viz.episode import play
+from gym_babble.viz.video import contact_sheet, png
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -16,6 +17,9 @@ if TYPE_CHECKING:
     from gym_babble.report.data import TaskRuns
 
 __all__ = ["strip_section"]
+
+FRAMES = 6
+"""Pictures of a strip."""
 
 
 def strip_section(task: TaskRuns) -> Iterator[dict[str, Any]]:
@@ -29,9 +33,12 @@ def strip_section(task: TaskRuns) -> Iterator[dict[str, Any]]:
     worth = _visibility if reaching else _size
     chosen = [case for case, success in zip(cases, solved, strict=True) if success]
     case: Any = max(chosen or cases, key=worth)
-    loaded = acting_agent(hebb)
-    film = record(loaded, options={"scenario": case}, size=600)
-    eye = record(loaded, options={"scenario": case}, camera="eye", size=630).frames[0]
+    episode = play(acting_agent(hebb), case)
+    eye = episode.env.picture("eye", (630, 630), 0)
+    moments = np.linspace(0, episode.moments - 1, FRAMES).round().astype(int).tolist()
+    frames = [episode.env.picture("third_person", (600, 600), k) for k in moments]
+    if reaching:  # The arm stays in the middle.
+        frames = [frame[60:400, 80:420] for frame in frames]
     among = f"{len(chosen):,} successes in {len(cases):,} tests" if chosen else "tests, all failed"
     why = (
         "a long way in the middle of the picture"
@@ -39,11 +46,10 @@ def strip_section(task: TaskRuns) -> Iterator[dict[str, Any]]:
         else "the first of the biggest objects"
     )
     what = "movement" if reaching else "grasp"
-    frames = [frame[60:400, 80:420] for frame in film.frames] if reaching else film.frames
     yield {
         "title": f"A {what}",
         "text": f"{agent.title[0]}, seed {agent.seeds[0]}, on case {case['index']}: "
-        f"{film.outcome.replace('_', ' ')}. Chosen from {among}: {why}.",
+        f"{episode.outcome.replace('_', ' ')}. Chosen from {among}: {why}.",
         "legend": False,
         "panels": [],
         "broad": [],

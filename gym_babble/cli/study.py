@@ -28,6 +28,14 @@ Jobs = Annotated[
     int | None, typer.Option(min=1, help="Runs at a time. Default: one for each processor.")
 ]
 
+Engine = Annotated[
+    str, typer.Option(help="local: processes on this machine. ray: the machines of a Ray cluster.")
+]
+Address = Annotated[
+    str | None,
+    typer.Option(help="Address of the Ray cluster; auto: the one that this machine is part of."),
+]
+
 
 class StudyBar:
     """Shows on stderr how a study goes on, with the time left."""
@@ -80,11 +88,17 @@ class StudyBar:
         self._bar.stop()
 
 
-def run_with_bar(study: Study, folder: Path, jobs: int | None) -> Store:
+def run_with_bar(
+    study: Study,
+    folder: Path,
+    jobs: int | None,
+    engine: str = "local",
+    address: str | None = None,
+) -> Store:
     """Runs what is missing of a study, and shows how it goes on."""
     bar = StudyBar()
     try:
-        return run_study(study, folder, bar, jobs=jobs)
+        return run_study(study, folder, bar, jobs=jobs, engine=engine, address=address)
     finally:
         bar.close()
 
@@ -97,17 +111,23 @@ def run(
     *,
     folder: Annotated[Path, typer.Option("--out", help="Folder of the study.")],
     jobs: Jobs = None,
+    engine: Engine = "local",
+    address: Address = None,
 ) -> None:
     """Run a study, or what is missing of it: each finished run is stored at once."""
-    _run(read_study(spec), folder, jobs)
+    _run(read_study(spec), folder, jobs, engine, address)
 
 
 @study.command("resume")
 def resume(
-    folder: Annotated[Path, typer.Argument(help="Folder of the study.")], *, jobs: Jobs = None
+    folder: Annotated[Path, typer.Argument(help="Folder of the study.")],
+    *,
+    jobs: Jobs = None,
+    engine: Engine = "local",
+    address: Address = None,
 ) -> None:
     """Go on with the study in a folder."""
-    _run(Store(folder).study(), folder, jobs)
+    _run(Store(folder).study(), folder, jobs, engine, address)
 
 
 @study.command("show")
@@ -142,8 +162,8 @@ def list_studies() -> None:
     print_results(table)
 
 
-def _run(study: Study, folder: Path, jobs: int | None) -> None:
-    store = run_with_bar(study, folder, jobs)
+def _run(study: Study, folder: Path, jobs: int | None, engine: str, address: str | None) -> None:
+    store = run_with_bar(study, folder, jobs, engine, address)
     runs = store.runs(runs_of(study))
     _print(study, runs)
     if not all(run.finished for run in runs):

@@ -199,6 +199,18 @@ def test_a_node_of_another_version_stops_the_study(tmp_path, monkeypatch):
 
 
 @pytest.mark.filterwarnings("ignore")
+def test_a_node_without_this_version_stops_the_study(tmp_path, cluster, monkeypatch):
+    older = tmp_path / "older"
+    (older / "gym_babble").mkdir(parents=True)
+    (older / "gym_babble" / "__init__.py").touch()
+    monkeypatch.setenv("PYTHONPATH", str(older))
+    cluster.add_node(num_cpus=4)
+    cluster.wait_for_nodes()
+    with pytest.raises(StudyError, match="a node cannot run this version of gym-babble: Module"):
+        run_study(small(["random"], seeds=6), tmp_path / "ray", Silent(), engine="ray")
+
+
+@pytest.mark.filterwarnings("ignore")
 def test_ctrl_c_ends_the_runs_of_a_cluster(tmp_path, cluster, starts):
     spec = tmp_path / "spec.json"
     study = learners("Learner", seeds=4)

@@ -74,6 +74,9 @@ LAYERS = (
 )
 
 HEAVY_MODULES = {
+    *("jinja2", "matplotlib", "pygame", "ray", "rich", "scipy", "stable_baselines3", "torch"),
+    "typer",
+}
     *("matplotlib", "pygame", "ray", "rich", "scipy", "stable_baselines3", "torch", "typer"),
 }
 

@@ -144,7 +144,7 @@ def notes(task: dict[str, Any]) -> dict[str, str]:
         f"{words.accepted}. The time of tests does not count.",
         "learning": f"At each checkpoint an agent plays the first {task['checkpoint_cases']:,} of "
         "the test cases, while the clocks stand still. Thick: interquartile mean over the seeds. "
-        "Bands: its 95 % interval. Thin: single runs.",
+        f"Bands: its 95 % interval. Thin: single runs.{_joined(task)}",
         "budgets": "The median seed. A run is tested at checkpoints only, so it has needed more "
         "than the checkpoint before, and at most the number shown. Small: 95 % interval from a "
         "bootstrap over seeds, with the distance of the checkpoints in it. “>” means that the "
@@ -158,6 +158,14 @@ def notes(task: dict[str, Any]) -> dict[str, str]:
         "mcnemar": "Each pair is the first seed of two agents, on the same cases. The exact test "
         "is about these two trained agents, and says nothing about other seeds.",
     }
+
+
+def _joined(task: dict[str, Any]) -> str:
+    """What a reader must know of curves from elsewhere."""
+    if not task["joined"]:
+        return ""
+    titles = ", ".join(one["title"] for one in task["joined"])
+    return f" {titles}: from logs of stable-baselines3; their episodes are not this study's cases."
 
 
 def methods(document: dict[str, Any]) -> dict[str, str]:

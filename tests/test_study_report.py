@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from typing import Any
 
@@ -15,6 +16,8 @@ pytest.importorskip("matplotlib", reason="the wheel's tests install no extra")
 pytest.importorskip("scipy", reason="the wheel's tests install no extra")
 
 from gym_babble.report.citation import bibtex
+from gym_babble.report.data import tasks_of
+from gym_babble.report.learning import ratio_numbers
 from gym_babble.report.rendering import count, seconds
 from gym_babble.report.writing import REPORT_FILES, write_report
 from gym_babble.study.rates import share
@@ -203,6 +206,20 @@ def test_budgets_that_were_not_reached_are_bounds(report):
             assert float(row["after"]) > 0
 
 
+def test_each_learner_is_the_reference_of_ratios_in_control_steps(store):
+    (task,) = tasks_of(store)
+    (one,) = task.learners
+    twice = replace(one, spec=replace(one.spec, label="again"))
+    ratios = ratio_numbers([one, twice])
+    assert {axis: {*found} for axis, found in ratios.items()} == {
+        "trials": {"hebb-paper"},
+        "control_steps": {"hebb-paper", "again"},
+        "cpu_seconds": {"hebb-paper"},
+    }
+    for cell in ratios["control_steps"]["hebb-paper"]["again"]:  # The same runs.
+        assert cell["value"] in {None, 1.0}
+
+
 def test_the_same_store_is_the_same_report(store, report, tmp_path):
     # An earlier report of a study with another task leaves nothing behind.
     (tmp_path / "results.json").write_text('{"files": ["old.svg", "../x.svg"]}', encoding="utf-8")
@@ -246,7 +263,7 @@ def test_a_report_of_grasping_shows_sizes_hands_and_sight(tmp_path):
     Page(text)
     for sentence in ("A grasp", "any touch", "Success by size", "objects placed in the hand"):
         assert sentence in text
-    assert "the paper" not in text.partition("Citation")[0].replace("the paper's", "")
+    assert '<tr class="paper">' not in text
 
 
 @pytest.mark.parametrize(

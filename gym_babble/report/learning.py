@@ -43,16 +43,27 @@ def budget_numbers(agent: AgentRuns, axis: str) -> list[dict[str, Any]]:
     return [{**asdict(one), "reached": one.reached} for one in _budgets(agent, axis)]
 
 
-def ratio_numbers(learners: Sequence[AgentRuns]) -> dict[str, dict[str, list[dict[str, Any]]]]:
-    """How many times the cost of the first learner each of the others needs, by axis."""
-    found: dict[str, dict[str, list[dict[str, Any]]]] = {}
-    for other in learners[1:]:
-        found[other.spec.label] = {}
-        for axis in AXES:
-            pairs = zip(_budgets(other, axis), _budgets(learners[0], axis), strict=True)
-            ratios = [ratio(one, first) for one, first in pairs]
-            found[other.spec.label][axis] = [{**asdict(one), "text": str(one)} for one in ratios]
+def ratio_numbers(
+    learners: Sequence[AgentRuns],
+) -> dict[str, dict[str, dict[str, list[dict[str, Any]]]]]:
+    """How many times the cost of one learner another needs, by axis, the one, and the other.
+
+    In control steps each learner is compared with each, along the other axes with the first alone.
+    """
+    found: dict[str, dict[str, dict[str, list[dict[str, Any]]]]] = {}
+    for axis in AXES:
+        budgets = {agent.spec.label: _budgets(agent, axis) for agent in learners}
+        references = list(budgets) if axis == "control_steps" else list(budgets)[:1]
+        found[axis] = {
+            one: {other: _ratios(budgets[other], budgets[one]) for other in budgets if other != one}
+            for one in references
+        }
     return found
+
+
+def _ratios(budgets: Sequence[Budget], reference: Sequence[Budget]) -> list[dict[str, Any]]:
+    ratios = [ratio(*pair) for pair in zip(budgets, reference, strict=True)]
+    return [{**asdict(one), "text": str(one)} for one in ratios]
 
 
 def _budgets(agent: AgentRuns, axis: str) -> list[Budget]:

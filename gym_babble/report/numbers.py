@@ -6,6 +6,7 @@ from dataclasses import asdict
 from statistics import fmean
 from typing import TYPE_CHECKING, Any
 
+from gym_babble.envs.registry import task_entry
 from gym_babble.report.compared import improvement_numbers, mcnemar_numbers, profile_numbers
 from gym_babble.report.data import AXES
 from gym_babble.report.learning import budget_numbers, curve_numbers, ratio_numbers
@@ -25,6 +26,7 @@ __all__ = ["absent_numbers", "task_numbers"]
 def task_numbers(task: TaskRuns) -> dict[str, Any]:
     """All numbers of a task."""
     config = task.spec.config
+    protocol = task_entry(task.spec.task).protocols[task.spec.protocol]
     return {
         "name": task.name,
         "task": task.spec.task,
@@ -33,7 +35,7 @@ def task_numbers(task: TaskRuns) -> dict[str, Any]:
         "protocol": task.spec.protocol,
         "config": config if isinstance(config, str) else "a config of its own",
         "cases": len(task.agents[0].happened("success")[0]) if task.agents else None,
-        "case_seed": task.spec.case_seed,
+        "case_seed": task.spec.case_seed if protocol.random else None,
         "checkpoint_cases": task.spec.checkpoint_cases,
         "levels": list(LEVELS),
         "paper": _paper(task),

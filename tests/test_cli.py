@@ -372,30 +372,6 @@ def test_reproduce_figures_of_grasping(run, tmp_path, figure):
     assert path.read_bytes().startswith(b"\x89PNG")
 
 
-@pytest.mark.parametrize(
-    ("kind", "name", "begins"),
-    [
-        ("png", "frame0000.png", b"\x89PNG"),
-        ("gif", "episode.gif", b"GIF8"),
-        ("mp4", "episode.mp4", b"\x00\x00\x00"),
-    ],
-)
-def test_render(run, tmp_path, kind, name, begins):
-    words = ("--format", kind, "--size", 48, "--env-id", "BabbleReachPattern-v0")
-    code, _, told = run("render", "scripted", "--out", tmp_path / "film", *words)
-    assert code == 0
-    assert "success" in told
-    assert (tmp_path / "film" / "sheet.png").read_bytes().startswith(b"\x89PNG")
-    assert (tmp_path / "film" / name).read_bytes().startswith(begins)
-
-
-def test_render_an_agent_of_grasping(run, tmp_path, grasping_file):
-    code, _, told = run("render", grasping_file, "--out", tmp_path / "film", "--size", 48)
-    assert code == 0
-    assert "control steps" in told
-    assert (tmp_path / "film" / "episode.gif").read_bytes().startswith(b"GIF8")
-
-
 def test_doctor(run, run_json):
     found = run_json("doctor")
     assert found["same_bits"]
@@ -438,7 +414,6 @@ def test_doctor(run, run_json):
         (["reproduce", "fig3"], "fig3"),
         (["reproduce", "fig5", "--out", "picture.xyz"], "picture.xyz"),
         (["reproduce", "table1", "--control", "torque"], "--control"),
-        (["render", "random", "--out", "film", "--format", "avi"], "--format"),
         (["export", "--format", "sdf"], "--format"),
         (["export", "--timestep", "0"], "timestep = 0 is not above 0 s"),
         (["export", "--config", "thin.toml"], "thin.toml"),

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import difflib
 import importlib
+import re
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gym_babble.errors import ConfigError
@@ -24,6 +26,8 @@ __all__ = ["ROSTER", "Place", "RosterAgent", "roster_agent", "trainer_for"]
 PATTERN, REACH, GRASP = "BabbleReachPattern-v0", "BabbleReach-v0", "BabbleGrasp-v0"
 
 GOAL = "BabbleReachGoal-v0"
+
+TUNED = Path(__file__).parent / "tuned"
 
 REFLEX = "enclosure reflex"
 IN_HAND = "objects placed in the hand"
@@ -58,9 +62,17 @@ class RosterAgent:
     settings: Mapping[str, Any] = field(default_factory=dict)
     seeded: bool = True
     """Whether it depends on the seed; if not, one run is enough."""
-
     in_compare: bool = True
     """Whether `gym-babble compare` includes it unless agents are named."""
+
+    def tuned(self, env_id: str) -> str:
+        """The text of its tuned settings in an environment; empty if it has none in a file."""
+        module, _, algorithm = self.trainer.partition(":")
+        if module != "sb3":
+            return ""
+        text = (TUNED / f"{algorithm}.yml").read_text(encoding="utf-8")
+        found = re.search(rf"^{re.escape(env_id)}:\n((?: .*\n?|\n)*)", text, re.MULTILINE)
+        return found[1] if found else ""
 
 
 ROSTER = {

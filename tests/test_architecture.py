@@ -77,8 +77,6 @@ HEAVY_MODULES = {
     *("jinja2", "matplotlib", "pygame", "ray", "rich", "scipy", "stable_baselines3", "torch"),
     "typer",
 }
-    *("matplotlib", "pygame", "ray", "rich", "scipy", "stable_baselines3", "torch", "typer"),
-}
 
 
 @pytest.fixture(scope="module")

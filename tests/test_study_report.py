@@ -21,7 +21,7 @@ from gym_babble.report.citation import bibtex
 from gym_babble.report.data import AXES, tasks_of
 from gym_babble.report.joined import read_joined
 from gym_babble.report.numbers import task_numbers
-from gym_babble.report.rendering import count, seconds
+from gym_babble.report.formats import count, seconds
 from gym_babble.report.writing import REPORT_FILES, write_report
 from gym_babble.study.rates import share
 from gym_babble.study.run import execute, runs_of

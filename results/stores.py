@@ -77,6 +77,9 @@ STUDIES = {
 }
 """Stored studies of PPO."""
 
+TUNING = ROOT / "docs" / "studies" / "tuning"
+"""Folder of what examples/tune.py wrote."""
+
 LEARNT_FROM = ("movements", "control_steps", "seconds", "processor_seconds")
 
 
@@ -130,6 +133,9 @@ class Stores(dict[str, Any]):
         """Reads a store."""
         if name == "derived":
             self[name] = derived(self)
+        elif name == "tuning":
+            files = sorted(TUNING.glob("*.json"))
+            self[name] = [json.loads(path.read_text(encoding="utf-8")) for path in files]
         elif name in STUDIES:
             self[name] = of_study(STUDIES[name])
         else:

@@ -35,13 +35,12 @@ help: ## List the targets
 setup: $(STAMPS)/extension ## Install everything into .venv and build the extension (the others call it)
 
 demo: setup ## Compare the agents on both tasks and write figures and tables into report/
-	$(BIN)/gym-babble compare --report report --other-report grasp/index.html
-	$(BIN)/gym-babble compare --task grasp --report report/grasp --other-report ../index.html
+	$(BIN)/gym-babble study run demo --out report/study
+	$(BIN)/gym-babble study report report/study --out report
 
 PICTURES := docs/images
 pictures: setup ## Draw the pictures of README and docs again, without those of `make bench` (some minutes)
 	$(BIN)/python examples/film.py --out $(PICTURES)/babble.gif
-	$(BIN)/python examples/learning_curves.py --out $(PICTURES)/learning.png
 	for figure in fig2 fig4 fig5 fig7 fig8 sight; do \
 		$(BIN)/gym-babble reproduce $$figure --out $(PICTURES)/$$figure.png || exit 1; done
 
@@ -108,15 +107,16 @@ microbench: setup ## Measure parts: criterion in Rust, pytest-benchmark in Pytho
 frameworks: $(foreach set,$(FRAMEWORK_SETS),$(FRAMEWORKS)/$(set)/installed) ## Run the snippets of docs/frameworks.md in environments of their own (12 GB)
 	$(foreach set,$(FRAMEWORK_SETS),$(FRAMEWORKS)/$(set)/bin/python .ci/frameworks.py $(set) &&) true
 	$(FRAMEWORKS)/learners/bin/python .ci/rl_zoo3_settings.py
-	$(FRAMEWORKS)/rllib/bin/python examples/rllib_ppo.py
+	$(FRAMEWORKS)/rllib/bin/python examples/rllib_ppo.py --iterations 2 --every 1
+	$(FRAMEWORKS)/rllib/bin/pytest -s tests/test_rllib.py tests/test_study_ray.py
 
 constraints: $(STAMPS)/dependencies ## Pin the newest releases that pyproject.toml allows, for every Python and platform
-	$(BIN)/uv pip compile pyproject.toml --all-extras --universal --python-version 3.10 --upgrade \
+	$(BIN)/uv pip compile pyproject.toml --extra all --extra dev --universal --python-version 3.10 --upgrade \
 		--no-annotate --custom-compile-command 'make constraints' --quiet --output-file constraints.txt
 
 audit-export: $(STAMPS)/dependencies ## Write the pinned Python dependencies with their hashes, for pip-audit
 	@mkdir -p build
-	$(BIN)/uv pip compile pyproject.toml --all-extras --universal --python-version 3.10 \
+	$(BIN)/uv pip compile pyproject.toml --extra all --extra dev --universal --python-version 3.10 \
 		--constraints constraints.txt --generate-hashes --no-annotate --no-header --quiet \
 		--output-file build/requirements.txt
 
@@ -125,7 +125,7 @@ clean: ## Remove what the other targets made
 	find gym_babble tests bench -name __pycache__ -prune -exec rm -rf {} +
 	rm -f gym_babble/_core*.so
 
-# constraints.txt names every package of every extra, so it is also the list to install.
+# constraints.txt names every package of the extras `all` and `dev`, so it is also the list to install.
 $(STAMPS)/dependencies: pyproject.toml constraints.txt
 	@command -v "$(PYTHON)" >/dev/null || \
 		{ echo "error: $(PYTHON) not found: install Python 3.10 or newer, or name one: make PYTHON=python3.12 ..." >&2; exit 1; }

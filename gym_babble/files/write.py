@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
 __all__ = ["part_of", "write_file", "write_files"]
 
@@ -40,7 +40,9 @@ def write_file(path: str | os.PathLike[str], content: Content) -> None:
         _sync_folder(target.parent)
 
 
-def write_files(folder: str | os.PathLike[str], contents: Mapping[str, Content]) -> list[Path]:
+def write_files(
+    folder: str | os.PathLike[str], contents: Mapping[str, Content], *, stale: Iterable[str] = ()
+) -> list[Path]:
     """Writes files that belong together: the folder never has files of two runs.
 
     All are written aside before the first is renamed. The earlier files go first, so that a crash
@@ -50,6 +52,7 @@ def write_files(folder: str | os.PathLike[str], contents: Mapping[str, Content])
     Args:
         folder: Folder of the files; created if missing.
         contents: Content of each file, by name.
+        stale: Names of earlier files that the new ones do not replace, and that go too.
 
     Returns:
         The files.
@@ -68,7 +71,7 @@ def write_files(folder: str | os.PathLike[str], contents: Mapping[str, Content])
             for target, content in zip(targets, contents.values(), strict=True):
                 parts.append(_write_part(target, content))
             with _locked(place):
-                for earlier in targets[1:]:
+                for earlier in [*(place / name for name in stale), *targets[1:]]:
                     earlier.unlink(missing_ok=True)
                 for part, target in zip(parts, targets, strict=True):
                     _rename(part, target)

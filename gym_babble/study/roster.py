@@ -8,7 +8,10 @@ from __future__ import annotations
 
 import difflib
 import importlib
-from dataclasses import dataclass, field, replace
+import re
+from dataclasses import dataclass, field
+from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gym_babble.errors import ConfigError
@@ -24,6 +27,8 @@ __all__ = ["ROSTER", "Place", "RosterAgent", "roster_agent", "trainer_for"]
 PATTERN, REACH, GRASP = "BabbleReachPattern-v0", "BabbleReach-v0", "BabbleGrasp-v0"
 
 GOAL = "BabbleReachGoal-v0"
+
+TUNED = Path(__file__).parent / "tuned"
 
 REFLEX = "enclosure reflex"
 IN_HAND = "objects placed in the hand"
@@ -58,9 +63,23 @@ class RosterAgent:
     settings: Mapping[str, Any] = field(default_factory=dict)
     seeded: bool = True
     """Whether it depends on the seed; if not, one run is enough."""
-
     in_compare: bool = True
     """Whether `gym-babble compare` includes it unless agents are named."""
+
+    @property
+    def extra(self) -> str | None:
+        """The extra that its trainer needs and that is not installed; None if none is missing."""
+        needs_it = self.trainer.startswith("sb3:")
+        return "sb3" if needs_it and find_spec("stable_baselines3") is None else None
+
+    def tuned(self, env_id: str) -> str:
+        """The text of its tuned settings in an environment; empty if it has none in a file."""
+        module, _, algorithm = self.trainer.partition(":")
+        if module != "sb3":
+            return ""
+        text = (TUNED / f"{algorithm}.yml").read_text(encoding="utf-8")
+        found = re.search(rf"^{re.escape(env_id)}:\n((?: .*\n?|\n)*)", text, re.MULTILINE)
+        return found[1] if found else ""
 
 
 ROSTER = {
@@ -188,6 +207,8 @@ def roster_agent(name: str) -> RosterAgent | None:
 def trainer_for(name: str, order: Order) -> Trainer:
     """The trainer of an agent by name, from a file, or of "module:Class".
 
+    The order has what the roster says of the agent, as `runs_of` completes it.
+
     Raises:
         ConfigError: There is no such agent or setting, or it cannot do what is ordered.
         FileNotFoundError: There is no such file.
@@ -200,10 +221,4 @@ def trainer_for(name: str, order: Order) -> Trainer:
         raise ConfigError(f"agent = {name!r} has no form for {order.task}ing")
     module, _, function = entry.trainer.partition(":")
     make = getattr(importlib.import_module(f"gym_babble.study.trainers.{module}"), function)
-    complete = replace(
-        order,
-        env_id=order.env_id or entry.tasks[order.task].env_id,
-        options={**entry.options, **order.options},
-        settings={**entry.settings, **order.settings},
-    )
-    return make(complete)  # type: ignore[no-any-return]
+    return make(order)  # type: ignore[no-any-return]

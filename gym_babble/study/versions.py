@@ -22,7 +22,7 @@ EXTRAS = {
     "figures": ("matplotlib", "pillow"),
     "human": ("pygame-ce",),
     "video": ("moviepy",),
-    "study": ("scipy",),
+    "study": ("jinja2", "scipy"),
 }
 """The extras, with the packages of each."""
 

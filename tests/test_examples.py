@@ -47,6 +47,7 @@ RUNS = {
         "--cases 3 --ids BabbleReachGoal-v0",
         r"\| `BabbleReachGoal-v0` \| pattern \| \d\.\d{3} \| \d\.\d{3} \|",
     ),
+    "convergence.py": ("--steps 640", r"posture: 0 in 640 control steps"),
     "grasp_sides.py": ("--cases 12", r"\| all \| 12 \| \d\.\d\d \| \d\.\d\d \|"),
     "grasp_interference.py": (
         "--seeds 1 --babbles 12 --cases 8",
@@ -97,6 +98,7 @@ def test_last_line(name, repository, monkeypatch, capsys, tmp_path):
         ("grasp_sizes.py", {"diameter", "held", "edges"}),
         ("grasp_sides.py", {"rows", "all"}),
         ("solvable.py", {"id", "control", "cases", "scripted", "oracle"}),
+        ("convergence.py", {"delta_posture", "posture"}),
         ("grasp_interference.py", {"babbled_with", "mean", "spread", "babbled", "in_hand"}),
     ],
 )

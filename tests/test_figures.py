@@ -116,6 +116,15 @@ def test_fig5_has_four_patterns_and_the_map(hebb):
     assert [picture.shape for picture in pictures[:5]] == [(21, 21)] * 5
 
 
+def test_fig5_shows_a_gaze_of_the_conjunctive_map_and_rules_without_a_bound():
+    agent = HebbBabbling(variant="conjunctive", seed=0).learn(4_000)
+    sets = weight_sets(agent, gaze=fig5.strongest_gaze(agent))
+    assert sets.patterns.shape == (11, 11, 21, 21)
+    assert sets.field_deg == 30.0
+    oja = weight_sets(HebbBabbling(rule="oja", seed=0).learn(1_000))
+    assert oja.w_max == pytest.approx(np.abs(oja.patterns).max())
+
+
 def test_fig5_needs_the_papers_map_and_some_learning():
     with pytest.raises(ConfigError, match="paper"):
         weight_sets(HebbBabbling(variant="conjunctive"))

@@ -11,6 +11,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, Ti
 
 from gym_babble.cli.output import messages, name_files, print_results, say
 from gym_babble.files import check_folder
+from gym_babble.report.joined import read_joined
 from gym_babble.report.writing import REPORT_FILES, write_report
 from gym_babble.study.engine import run_study
 from gym_babble.study.results import task_table
@@ -143,12 +144,29 @@ def report(
     folder: Annotated[Path, typer.Argument(help="Folder of the study.")],
     *,
     out: Annotated[Path, typer.Option(help="Folder for the page, its numbers and charts.")],
+    join: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="TASK:LABEL=PATH",
+            help="Logs of stable-baselines3 whose learning curves join: evaluations.npz, "
+            "monitor.csv, a run's folder, or a folder of such folders, one for each seed.",
+        ),
+    ] = None,
+    steps_per_action: Annotated[
+        int, typer.Option(min=1, help="Control steps of one step of the joined runs.")
+    ] = 1,
 ) -> None:
     """Write a study as a page, with its numbers as JSON and CSV and its charts as SVG."""
     check_folder(out, "--out", REPORT_FILES)
-    command = shlex.join(["gym-babble", "study", "report", str(folder), "--out", str(out)])
+    store = Store(folder)
+    joined = [read_joined(one, store.study(), steps_per_action) for one in join or ()]
+    words = ["gym-babble", "study", "report", str(folder), "--out", str(out)]
+    for one in join or ():
+        words += ["--join", one]
+    if steps_per_action != 1:
+        words += ["--steps-per-action", str(steps_per_action)]
     say("writing the report")
-    name_files(write_report(Store(folder), out, command))
+    name_files(write_report(store, out, shlex.join(words), joined))
 
 
 @study.command("list")

@@ -13,10 +13,6 @@ RUNS = {
         "--movements 500 --babbles 100 --out {folder}/babble.gif",
         r".+/babble\.gif: \d+ kB",
     ),
-    "learning_curves.py": (
-        "--movements 500 --cases 20 --agents hebb-paper hebb-conjunctive --out {folder}/curves.png",
-        r"Hebb conjunctive, obstacle × eye: 0\.\d+ after [\d,]+ control steps, 0\.\d+ on the tests",
-    ),
     "hebb_reach.py": (
         "--movements 250 --cases 50",
         r"success 0\.\d+ \[0\.\d+, .+\] \(paper: 0\.67\)",

@@ -66,6 +66,7 @@ STORES: dict[str, dict[str, str]] = {
         "closed-rapier": f"{HOLD} --reflex 90 90 --engine rapier --diameters 2.4",
     },
     "periods": {"rows": "python examples/grasp_learning_period.py"},
+    "convergence": {"counts": "python examples/convergence.py"},
     "sides": {"scripted": "python examples/grasp_sides.py"},
     "interference": {"rows": "python examples/grasp_interference.py --seeds 2"},
 }

@@ -93,6 +93,7 @@ def starts(tmp_path, monkeypatch):
     monkeypatch.setenv("RAY_worker_niceness", "0")
     monkeypatch.setenv("RAY_memory_monitor_refresh_ms", "0")
     monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.chdir(tmp_path)  # Ray's processes look for packages in the driver's folder first.
 
     def read():
         path = tmp_path / "starts"

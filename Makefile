@@ -108,15 +108,16 @@ microbench: setup ## Measure parts: criterion in Rust, pytest-benchmark in Pytho
 frameworks: $(foreach set,$(FRAMEWORK_SETS),$(FRAMEWORKS)/$(set)/installed) ## Run the snippets of docs/frameworks.md in environments of their own (12 GB)
 	$(foreach set,$(FRAMEWORK_SETS),$(FRAMEWORKS)/$(set)/bin/python .ci/frameworks.py $(set) &&) true
 	$(FRAMEWORKS)/learners/bin/python .ci/rl_zoo3_settings.py
-	$(FRAMEWORKS)/rllib/bin/python examples/rllib_ppo.py
+	$(FRAMEWORKS)/rllib/bin/python examples/rllib_ppo.py --iterations 2 --every 1
+	$(FRAMEWORKS)/rllib/bin/pytest -s tests/test_rllib.py tests/test_study_ray.py
 
 constraints: $(STAMPS)/dependencies ## Pin the newest releases that pyproject.toml allows, for every Python and platform
-	$(BIN)/uv pip compile pyproject.toml --all-extras --universal --python-version 3.10 --upgrade \
+	$(BIN)/uv pip compile pyproject.toml --extra all --extra dev --universal --python-version 3.10 --upgrade \
 		--no-annotate --custom-compile-command 'make constraints' --quiet --output-file constraints.txt
 
 audit-export: $(STAMPS)/dependencies ## Write the pinned Python dependencies with their hashes, for pip-audit
 	@mkdir -p build
-	$(BIN)/uv pip compile pyproject.toml --all-extras --universal --python-version 3.10 \
+	$(BIN)/uv pip compile pyproject.toml --extra all --extra dev --universal --python-version 3.10 \
 		--constraints constraints.txt --generate-hashes --no-annotate --no-header --quiet \
 		--output-file build/requirements.txt
 
@@ -125,7 +126,7 @@ clean: ## Remove what the other targets made
 	find gym_babble tests bench -name __pycache__ -prune -exec rm -rf {} +
 	rm -f gym_babble/_core*.so
 
-# constraints.txt names every package of every extra, so it is also the list to install.
+# constraints.txt names every package of the extras `all` and `dev`, so it is also the list to install.
 $(STAMPS)/dependencies: pyproject.toml constraints.txt
 	@command -v "$(PYTHON)" >/dev/null || \
 		{ echo "error: $(PYTHON) not found: install Python 3.10 or newer, or name one: make PYTHON=python3.12 ..." >&2; exit 1; }

@@ -1,31 +1,25 @@
 """The film of the README: two agents that babbled and learnt by a Hebb rule, side by side.
 
 Left, the conjunctive variant reaches around an obstacle; right, the paper's agent grasps a ball.
-Each film is a success, chosen from the first test cases for how much it shows.
+Each episode is a success, chosen from the first test cases for how much it shows. Agents of one
+task on one case need no program: `gym-babble record`.
 
 python examples/film.py --out docs/images/babble.gif    # about half a minute
 """
 
 import argparse
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from PIL import Image
 
 from gym_babble import HebbBabbling, scenarios
 from gym_babble.agents.loading import acting_agent
 from gym_babble.files import check_file, write_file
-from gym_babble.viz.film import Film, record
-
-SIZE = 560
-MIDDLE = slice(60, 440), slice(70, 490)
-"""What is shown of a picture of this size: rows and columns [pixel]."""
-EVERY = 4
-"""Every fourth control step is shown, for 100 ms: twice as fast as simulated time."""
-LAST = 10
-"""Pictures at the end of the longer film that stand still."""
+from gym_babble.viz.episode import Episode, play
+from gym_babble.viz.film import Film, Scene
+from gym_babble.viz.panel import Panel
+from gym_babble.viz.video import check_film, film_bytes
 
 
 def shows(case: dict[str, Any]) -> tuple[float, ...]:
@@ -38,29 +32,17 @@ def shows(case: dict[str, Any]) -> tuple[float, ...]:
     return case["diameter"], float(np.arctan2(y, x) - case["start"][0])
 
 
-def film(agent: HebbBabbling, cases: list[Any]) -> Film:
+def success(agent: HebbBabbling, cases: list[Any]) -> Episode:
     """The success that shows most."""
     loaded = acting_agent(agent)
     for case in sorted(cases, key=shows, reverse=True):
-        one = record(loaded, options={"scenario": case}, size=SIZE)
-        if one.outcome == "success":
+        episode = play(loaded, case)
+        if episode.outcome == "success":
             print(f"case {case['index']} of {case['protocol']}")
-            return one
+            return episode
     raise SystemExit(
         f"none of {len(cases)} cases of {cases[0]['protocol']} was a success: learn more"
     )
-
-
-def side_by_side(films: list[Film]) -> list[Image.Image]:
-    """Pictures of films beside each other; one that has ended stands still."""
-    frames = [one.frames[::EVERY] for one in films]
-    pictures = []
-    for k in range(max(map(len, frames)) + LAST):
-        left, right = (these[min(k, len(these) - 1)][MIDDLE] for these in frames)
-        bar = np.full((len(left), 6, 3), 255, np.uint8)
-        pictures.append(Image.fromarray(np.hstack([left, bar, right])))
-    palette = pictures[len(pictures) // 2].quantize(96)
-    return [one.quantize(palette=palette, dither=Image.Dither.NONE) for one in pictures]
 
 
 def main() -> None:
@@ -72,19 +54,20 @@ def main() -> None:
     parser.add_argument("--cases", type=int, default=20, help="test cases to choose from")
     arguments = parser.parse_args()
     check_file(arguments.out, "--out")
+    check_film(arguments.out)
     reaching = HebbBabbling("BabbleReachPattern-v0", "conjunctive", seed=0)
     reaching.learn(arguments.movements, progress_bar=True)
     grasping = HebbBabbling("BabbleGrasp-v0", seed=0)
     grasping.learn(arguments.babbles, progress_bar=True)
-    films = [
-        film(reaching, scenarios("table1", arguments.cases)),
-        film(grasping, scenarios("palm_side", arguments.cases)),
-    ]
-    first, *rest = side_by_side(films)
-    gif = BytesIO()
-    first.save(gif, "GIF", save_all=True, append_images=rest, duration=100, loop=0)
-    write_file(arguments.out, gif.getvalue())
-    print(f"{arguments.out}: {len(gif.getvalue()) / 1e3:.0f} kB")
+    reached = success(reaching, scenarios("table1", arguments.cases))
+    grasped = success(grasping, scenarios("palm_side", arguments.cases))
+    panels = (
+        Panel("Reaching", f"after {reaching.learnt:,} legal movements", reached),
+        Panel("Grasping", f"after {grasping.learnt:,} babbles", grasped),
+    )
+    film = Film([Scene(panels)], width=360, fps=10, speed=2.0)
+    write_file(arguments.out, film_bytes(film, arguments.out.suffix, progress_bar=True))
+    print(f"{arguments.out}: {arguments.out.stat().st_size / 1e3:.0f} kB")
 
 
 if __name__ == "__main__":

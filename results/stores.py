@@ -75,7 +75,7 @@ STUDIES = {
     "ppo_reach": ROOT / "docs" / "studies" / "ppo_reach.json",
     "ppo_grasp": ROOT / "gym_babble" / "study" / "results" / "ppo_grasp.json",
 }
-"""Stores that examples/ppo_study.py writes."""
+"""Stored studies of PPO."""
 
 LEARNT_FROM = ("movements", "control_steps", "seconds", "processor_seconds")
 

@@ -14,7 +14,7 @@ from gym_babble.agents.loading import named_agent
 from gym_babble.envs import BabbleGraspEnv, BabbleReachEnv
 from gym_babble.errors import AgentFileError, ConfigError, ScenarioError
 from gym_babble.sb3 import BabbleVecEnv
-from gym_babble.study.ppo import train_ppo
+from gym_babble.study.trainers.sb3 import train_tuned
 
 PATTERN = "BabbleReachPattern-v0"
 STRAIGHT_ELBOW = {"body": {"joints": {"elbow": {"upper_deg": 90}}}}
@@ -188,12 +188,11 @@ def test_an_agent_of_your_own_says_where_it_acts_or_you_do():
 
 @pytest.fixture(scope="module")
 def zips(tmp_path_factory):
-    """A zip of each control, made by train_ppo; and one that it did not make."""
+    """A zip of each control, made by train_tuned; and one that it did not make."""
     folder = tmp_path_factory.mktemp("zips")
-    for preset in ("pattern", "delta_posture"):
-        train_ppo(preset, steps=1, validation_cases=0).agent.save(folder / preset)
-    icub = train_ppo("pattern", config="icub", steps=1, validation_cases=0)
-    icub.agent.save(folder / "icub")
+    for name, env_id in (("pattern", PATTERN), ("delta_posture", "BabbleReach-v0")):
+        train_tuned("ppo", env_id, steps=1).save(folder / name)
+    train_tuned("ppo", PATTERN, config="icub", steps=1).save(folder / "icub")
     tiny_ppo(BabbleVecEnv("BabbleReach-v0", 8, control="posture", max_episode_steps=10)).save(
         folder / "foreign"
     )

@@ -21,8 +21,8 @@ from gym_babble import (
 )
 from gym_babble.envs.registry import TASKS
 from gym_babble.study import learning
-from gym_babble.study.ppo import train_ppo
 from gym_babble.study.tasks import GRASP, REACH
+from gym_babble.study.trainers.sb3 import train_tuned
 
 MOVEMENTS = "500"
 
@@ -226,15 +226,16 @@ def test_evaluate_prints_the_papers_rates_beside(run):
     assert "scripted" in printed
 
 
-@pytest.mark.parametrize(("preset", "task"), [("pattern", REACH), ("grasp", GRASP)])
-def test_evaluate_a_model_of_stable_baselines3(run, run_json, tmp_path, preset, task):
+@pytest.mark.parametrize(
+    ("env_id", "task"), [("BabbleReachPattern-v0", REACH), ("BabbleGrasp-v0", GRASP)]
+)
+def test_evaluate_a_model_of_stable_baselines3(run, run_json, tmp_path, env_id, task):
     path = tmp_path / "model.zip"
-    trained = train_ppo(preset, steps=1, validation_cases=0)
-    trained.agent.save(path)
+    train_tuned("ppo", env_id, steps=1).save(path)
     tested = run_json("evaluate", path, "--cases", 6)
     check_rates(tested, 6, task)
-    assert tested["env_id"] == trained.env_id
-    assert tested == run_json("evaluate", path, "--cases", 6, "--env-id", trained.env_id)
+    assert tested["env_id"] == env_id
+    assert tested == run_json("evaluate", path, "--cases", 6, "--env-id", env_id)
     PPO("MlpPolicy", "Pendulum-v1", device="cpu").save(path)
     where = ("--env-id", "BabbleReach-v0")
     code, _, told = run("evaluate", path, *where)
@@ -371,30 +372,6 @@ def test_reproduce_figures_of_grasping(run, tmp_path, figure):
     assert path.read_bytes().startswith(b"\x89PNG")
 
 
-@pytest.mark.parametrize(
-    ("kind", "name", "begins"),
-    [
-        ("png", "frame0000.png", b"\x89PNG"),
-        ("gif", "episode.gif", b"GIF8"),
-        ("mp4", "episode.mp4", b"\x00\x00\x00"),
-    ],
-)
-def test_render(run, tmp_path, kind, name, begins):
-    words = ("--format", kind, "--size", 48, "--env-id", "BabbleReachPattern-v0")
-    code, _, told = run("render", "scripted", "--out", tmp_path / "film", *words)
-    assert code == 0
-    assert "success" in told
-    assert (tmp_path / "film" / "sheet.png").read_bytes().startswith(b"\x89PNG")
-    assert (tmp_path / "film" / name).read_bytes().startswith(begins)
-
-
-def test_render_an_agent_of_grasping(run, tmp_path, grasping_file):
-    code, _, told = run("render", grasping_file, "--out", tmp_path / "film", "--size", 48)
-    assert code == 0
-    assert "control steps" in told
-    assert (tmp_path / "film" / "episode.gif").read_bytes().startswith(b"GIF8")
-
-
 def test_doctor(run, run_json):
     found = run_json("doctor")
     assert found["same_bits"]
@@ -437,7 +414,6 @@ def test_doctor(run, run_json):
         (["reproduce", "fig3"], "fig3"),
         (["reproduce", "fig5", "--out", "picture.xyz"], "picture.xyz"),
         (["reproduce", "table1", "--control", "torque"], "--control"),
-        (["render", "random", "--out", "film", "--format", "avi"], "--format"),
         (["export", "--format", "sdf"], "--format"),
         (["export", "--timestep", "0"], "timestep = 0 is not above 0 s"),
         (["export", "--config", "thin.toml"], "thin.toml"),

@@ -10,11 +10,10 @@ from rich.console import Console
 from gym_babble import evaluate, scenarios
 from gym_babble.config import Config
 from gym_babble.errors import ConfigError, StudyError
-from gym_babble.study import contenders, learning
+from gym_babble.study import learning
 from gym_babble.study.compare import compare
 from gym_babble.study.comparison import TrainedResult
 from gym_babble.study.contenders import CONTENDERS, Settings
-from gym_babble.study.presets import PRESETS
 from gym_babble.study.rates import OUTCOMES
 from gym_babble.study.stored import STUDIES, Study
 from gym_babble.study.tasks import GRASP
@@ -31,8 +30,7 @@ def comparison():
 @contextmanager
 def few_validations():
     with pytest.MonkeyPatch.context() as patch:
-        for module in (contenders, learning):
-            patch.setattr(module, "VALIDATION_CASES", 4)
+        patch.setattr(learning, "VALIDATION_CASES", 4)
         yield
 
 
@@ -203,13 +201,12 @@ def test_the_stored_row_is_the_studys(grasping):
     assert not isinstance(result, TrainedResult)
 
 
-def test_the_study_is_a_whole_one_of_todays_preset():
-    # Catches a trial run that was left in the package, and a preset that was tuned afterwards.
+def test_the_study_is_a_whole_one():
+    # Catches a trial run that was left in the package.
     study = Study.read(STUDIES / "ppo_grasp.json")
-    assert study.presets == {"grasp": json.loads(json.dumps(PRESETS["grasp"].to_json()))}
     assert [run.seed for run in study.runs] == [0, 1, 2]
     for run in study.runs:
-        assert run.steps == PRESETS["grasp"].steps
+        assert run.steps == 2_500_000
         assert run.counts["cases"] == 1000
 
 
@@ -254,8 +251,7 @@ def test_without_stable_baselines3_the_others_run(monkeypatch):
     monkeypatch.setitem(sys.modules, "stable_baselines3", None)
     for name in list(sys.modules):
         if name in (
-            "gym_babble.study.ppo",
-            "gym_babble.study.presets",
+            "gym_babble.study.trainers.sb3",
             "gym_babble.sb3",
         ) or name.startswith("stable_baselines3."):
             monkeypatch.delitem(sys.modules, name)

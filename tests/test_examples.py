@@ -4,13 +4,9 @@ import json
 import re
 import runpy
 import sys
-from functools import partial
-from importlib.metadata import version
 
 import pytest
 import torch
-
-from gym_babble.study import compare, ppo
 
 RUNS = {
     "film.py": (
@@ -35,9 +31,9 @@ RUNS = {
         r"K_D 40: lag 0\.80 s, legal 0\.\d+, success 0\.\d+, .+",
     ),
     "ppo_reach.py": ("--steps 512 --cases 20", r"success 0\.\d+ \[0\.\d+, .+\]"),
-    "ppo_study.py": (
-        "--out {folder} --presets pattern delta_posture --seeds 1 --steps 512 --cases 20",
-        r"\| delta_posture \| 512 \| 1 \| .+ \|",
+    "tune.py": (
+        "td3 BabbleReachPattern-v0 --steps 300 --seeds 1 --cases 20 --trials 2 --out {folder}",
+        r"best of 2: [01]\.\d{3} with \{.+\}",
     ),
     "sensitivity.py": (
         "--seeds 1 --cases 20 --movements 50",
@@ -110,49 +106,3 @@ def test_an_experiment_prints_json(name, keys, repository, monkeypatch, capsys):
     runpy.run_path(str(path), run_name="__main__")
     printed = json.loads(capsys.readouterr().out)
     assert keys <= set(printed[0] if isinstance(printed, list) else printed)
-
-
-def test_what_a_study_of_grasping_writes_is_what_compare_shows(
-    repository, monkeypatch, capsys, tmp_path
-):
-    path = repository / "examples" / "ppo_study.py"
-    monkeypatch.setattr(ppo, "train_ppo", partial(ppo.train_ppo, validation_cases=2))
-    words = f"--task grasp --seeds 1 --steps 1 --cases 6 --out {tmp_path}"
-    monkeypatch.setattr(sys, "argv", [str(path), *words.split()])
-    runpy.run_path(str(path), run_name="__main__")
-    assert capsys.readouterr().out.strip().splitlines()[-1].startswith("| grasp | 1 | 1 |")
-    study = json.loads((tmp_path / "ppo_grasp.json").read_text(encoding="utf-8"))
-    assert study["command"] == f"python examples/ppo_study.py {words}"
-    monkeypatch.setattr(compare, "STUDIES", tmp_path)
-    settings = compare.Settings(task="grasp", cases=1)
-    (result,) = compare.compare(["ppo-stored"], settings).results
-    (run,) = study["runs"]
-    (rates,) = result.rates_by_seed
-    assert rates["cases"] == run["counts"]["cases"] == 6
-    assert rates["timeout"]["count"] == run["counts"]["timeout"]
-    assert sum(part["cases"] for part in run["by_size"].values()) == 6
-    assert result.trained[0].control_steps == run["control_steps"] == 8_192
-
-
-def test_a_study_goes_on_with_the_runs_that_are_missing(repository, monkeypatch, capsys, tmp_path):
-    path = repository / "examples" / "ppo_study.py"
-
-    def study(*words):
-        arguments = f"--presets pattern --steps 512 --cases 20 --out {tmp_path}".split()
-        monkeypatch.setattr(sys, "argv", [str(path), *arguments, *words])
-        runpy.run_path(str(path), run_name="__main__")
-        capsys.readouterr()
-        return json.loads((tmp_path / "ppo_reach.json").read_text(encoding="utf-8"))["runs"]
-
-    first = study("--seeds", "1-1")
-    assert [run["seed"] for run in first] == [1]
-    both = study("--seeds", "2", "--resume")
-    assert [run["seed"] for run in both] == [0, 1]
-    assert both[1] == first[0]  # Its seconds too: it did not run again.
-    for run in both:
-        assert run["versions"]["torch"] == version("torch")
-        assert run["machine"]["torch_threads"] == 1
-        assert run["validation"]["split"] == "validation"
-    assert [run["seed"] for run in study("--seeds", "1")] == [0]
-    with pytest.raises(SystemExit, match="number of cases"):
-        study("--seeds", "1", "--resume", "--cases", "21")

@@ -15,7 +15,7 @@ from gym_babble.study.contenders import Settings
 from gym_babble.study.rates import share
 from gym_babble.viz import style
 from gym_babble.viz.curves import learning_curves
-from gym_babble.viz.film import GAP, contact_sheet
+from gym_babble.viz.video import GAP, contact_sheet
 
 
 @pytest.fixture(scope="module")

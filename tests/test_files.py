@@ -137,13 +137,6 @@ def test_two_writers_of_one_folder_take_turns(tmp_path):
     assert len({path.read_text() for path in tmp_path.iterdir()}) == 1
 
 
-def test_stale_files_go_with_the_run_that_they_are_of(tmp_path):
-    write_files(tmp_path, dict.fromkeys("abc", EARLIER))
-    (tmp_path / "mine").touch()
-    assert write_files(tmp_path, {"a": "new"}, stale=["b", "c", "d"]) == [tmp_path / "a"]
-    assert names(tmp_path) == ["a", "mine"]
-
-
 @posix
 def test_permissions_links_and_devices_stay(tmp_path):
     target, link = tmp_path / "target", tmp_path / "link"

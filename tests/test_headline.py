@@ -9,11 +9,14 @@ science (the rule, the camera, what counts as success) does not: then measure th
 import math
 from statistics import fmean, stdev
 
+import gymnasium
 import pytest
 
+from gym_babble import Scripted, evaluate
 from gym_babble.paper.holding import hold_rates
 from gym_babble.paper.table1 import table1
 from gym_babble.study.rates import OUTCOMES
+from gym_babble.study.scenarios import scenarios
 from results.stores import Stores
 
 SIGMAS = 3.5
@@ -35,6 +38,13 @@ def assert_fits(found, stored, name, where):
     low, high = band(stored, name)
     rate = fmean(seed[name]["rate"] for seed in found)
     assert low <= rate <= high, f"{where}: {name} {rate:.3f} is not in [{low:.3f}, {high:.3f}]"
+
+
+def assert_likely(count, cases, known, known_cases):
+    """So many of so many cases fit a stored count."""
+    likely = (known + 1) / (known_cases + 2)
+    error = math.sqrt(likely * (1 - likely) * (1 / cases + 1 / known_cases))
+    assert abs(count / cases - known / known_cases) <= SIGMAS * error, f"{count} of {cases}"
 
 
 @pytest.fixture(scope="module")
@@ -79,6 +89,40 @@ def test_hold_rates(stored):
     reference = stored["sizes"]["tree"]
     found = hold_rates(10, diameters=[known["diameter"] for known in reference])
     for rate, known in zip(found, reference, strict=True):
-        likely = (known["held"] + 1) / (known["trials"] + 2)
-        error = math.sqrt(likely * (1 - likely) * (1 / 10 + 1 / known["trials"]))
-        assert abs(rate["rate"] - known["rate"]) <= SIGMAS * error, rate
+        assert_likely(rate["held"], 10, known["held"], known["trials"])
+
+
+class LettingGo:
+    """`Scripted`, which opens the hand 1.5 s after it has closed on the object."""
+
+    CLOSED_STEPS = 30
+
+    def __init__(self):
+        self.scripted = Scripted(gymnasium.make("BabbleGrasp-v0", control="posture"))
+        self.closed = 0
+
+    def predict(self, observation, *call):
+        actions, state = self.scripted.predict(observation, *call)
+        palm, thumb, fingers = observation["touch"].T > 0
+        self.closed = self.closed + (fingers & (palm | thumb))
+        actions[self.closed > self.CLOSED_STEPS, 2:] = -1
+        return actions, state
+
+
+@pytest.mark.parametrize("reflex", [False, True])
+def test_success_is_a_grasp_that_lasts(stored, reflex):
+    """A hand that lets go succeeds only if the enclosure reflex keeps it closed.
+
+    Then it succeeds as often as `Scripted`, which closes as the reflex does.
+    """
+    rows = stored["solved"]["BabbleGrasp-v0"]
+    known = next(row for row in rows if row["control"] == "posture")
+    cases = scenarios("palm_side", 40, seed=0)
+    found = evaluate(
+        LettingGo(), "BabbleGrasp-v0", cases, control="posture", enclosure_reflex=reflex
+    )
+    assert found.rate("palm_reach") == 1
+    if reflex:
+        assert_likely(found.count("success"), len(cases), known["scripted"], known["cases"])
+    else:
+        assert found.count("success") == 0

@@ -18,7 +18,6 @@ from gym_babble.files import write
 
 FOLDERS = {
     "compare": ["compare", "--agents", "random", "--cases", "3", "--report"],
-    "render": ["render", "random", "--size", "16", "--format", "png", "--out"],
     "table1": [
         *("reproduce", "table1", "--movements", "250", "--cases", "5", "--seeds", "1", "--out"),
     ],
@@ -32,6 +31,7 @@ FILES = {
     "babble": ["babble", "--movements", "250", "--quasi-static", "--out"],
     "babble-grasp": ["babble", "--task", "grasp", "--babbles", "50", "--out"],
     "export": ["export", "--out"],
+    "record": ["record", "random", "--size", "160", "--out"],
     **{
         name: ["reproduce", name, *trials, "--out"]
         for name, trials in (
@@ -96,8 +96,6 @@ def test_a_file_that_cannot_be_written_is_found_before_learning(
         ("film.py", "--out"),
         ("learning_curves.py", "--out"),
         ("ppo_reach.py", "--save"),
-        ("ppo_study.py", "--out"),
-        ("ppo_study.py", "--pictures"),
     ],
     ids=" ".join,
 )
@@ -143,17 +141,6 @@ def test_a_write_that_fails_leaves_the_earlier_run(name, run, tmp_path, monkeypa
     monkeypatch.setattr(write, "_write_part", fill)
     assert run(*command, path)[0] == 1
     assert {file: file.read_bytes() for file in tmp_path.rglob("*") if file.is_file()} == files
-
-
-def test_a_shorter_film_leaves_no_frames_of_a_longer_one(run, tmp_path):
-    def film(seed):
-        assert run(*FOLDERS["render"], tmp_path, "--seed", seed)[0] == 0
-        return sorted(path.name for path in tmp_path.glob("frame*"))
-
-    for k in range(3):
-        (tmp_path / f"frame99{k:02d}.png").touch()
-    frames = film(0)
-    assert frames == [f"frame{k:04d}.png" for k in range(len(frames))]
 
 
 @pytest.mark.slow

@@ -16,7 +16,7 @@ from gym_babble.agents.loading import named_agent
 from gym_babble.errors import ConfigError
 from gym_babble.study.compare import compare
 from gym_babble.study.contenders import Settings
-from gym_babble.viz.film import record
+from gym_babble.viz.episode import play
 
 PATTERN = "BabbleReachPattern-v0"
 
@@ -86,8 +86,8 @@ def test_agents_of_ones_own_are_tested_by_name(own):
 
 
 def test_an_agent_of_one_argument_is_filmed(own):
-    film = record(named_agent(f"{own}:Bulge", env_id=PATTERN), size=32)
-    assert len(film.frames) > 10
+    episode = play(named_agent(f"{own}:Bulge", env_id=PATTERN), scenarios("table1", 1)[0])
+    assert episode.moments > 10
 
 
 @pytest.mark.parametrize(

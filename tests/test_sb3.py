@@ -338,7 +338,7 @@ def test_pictures_and_videos(tmp_path):
     assert len(list(tmp_path.glob("*.mp4"))) == 2
 
 
-@pytest.mark.parametrize("module", ["sb3", "study.ppo"])
+@pytest.mark.parametrize("module", ["sb3", "study.trainers.sb3"])
 def test_names_the_extra_that_is_missing(module):
     script = f"""
 import sys

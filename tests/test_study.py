@@ -161,6 +161,15 @@ def test_each_agent_of_the_roster_runs_where_it_can():
     assert [spec.seed for spec in specs] == sorted(spec.seed for spec in specs)
 
 
+def test_tuned_settings_decide_a_run_too(monkeypatch):
+    entry = ROSTER["ppo"]
+    (before,) = {spec.fingerprint for spec in runs_of(only_reaching("ppo"))}
+    assert "n_epochs" in entry.tuned("BabbleReach-v0")
+    assert entry.tuned("BabbleReach-v0") != entry.tuned("BabbleGrasp-v0")
+    monkeypatch.setattr(type(entry), "tuned", lambda *_: "gamma: 0.9")
+    assert {spec.fingerprint for spec in runs_of(only_reaching("ppo"))} != {before}
+
+
 @given(st.integers(1, 10**9))
 def test_checkpoints_are_logarithmic_and_end_at_the_budget(budget):
     marks = checkpoints(budget)

@@ -23,7 +23,7 @@ FIGURES = (
     ("compare", "--movements", "1000", "--report", "report", *FEW),
     ("reproduce", "fig2"),
     ("reproduce", "fig5", "--movements", "1000"),
-    ("render", "scripted", "--out", "film", "--size", "32"),
+    ("record", "scripted", "--out", "film.mp4", "--size", "160", "--fps", "2"),
 )
 PROGRAM = """
 import sys

@@ -94,7 +94,7 @@ def carried(agent: Any) -> EnvArguments | None:
     """Where an agent acts, as it says itself; None if it does not.
 
     Ours have an `interface`. Others have `env`: an id, or an environment. Models of
-    stable-baselines3 that `train_ppo` trained say it after loading too.
+    stable-baselines3 that `train_tuned` trained say it after loading too.
 
     Raises:
         ConfigError: Wrappers of its environment change observations or actions.

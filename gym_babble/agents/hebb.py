@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from copy import copy
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -189,10 +190,43 @@ class HebbBabbling(Planner):
         Args:
             observation: As the environment gives it, of any `obs=`.
         """
+        return self._core.recall(self._one("recall", observation))
+
+    def perceive(self, observation: Observation) -> dict[str, NDArray[np.float32]]:
+        """Activities of the input maps for one observation, by name, in the order of `recall`.
+
+        In reaching `obstacle`, whose columns are the azimuth and rows the elevation; for the
+        conjunctive variant `target_obstacle`, with the axes tilt and pan of the target, then
+        elevation and azimuth of the obstacle. In grasping `eye`, whose columns are the pan and rows
+        the tilt, and `fovea`, the eye's edges row by row from the top.
+
+        Args:
+            observation: As the environment gives it, of any `obs=`.
+        """
+        return self._core.perceive(self._one("perceive", observation))
+
+    def _one(self, name: str, observation: Observation) -> NDArray[np.float32]:
+        """Flat senses (m,) of one observation.
+
+        Raises:
+            ConfigError: They are those of several.
+        """
         senses = self._senses(observation)
         if senses.ndim > 1:
-            raise ConfigError(f"recall takes one observation, got {len(senses)}")
-        return self._core.recall(senses)
+            raise ConfigError(f"{name} takes one observation, got {len(senses)}")
+        return senses
+
+    def untaught(self) -> HebbBabbling:
+        """A copy that has not babbled yet. It learns the same as this one has learnt."""
+        agent = copy(self)
+        agent._core = _core.Learner(  # noqa: SLF001 - its own
+            self._babbles_in.task,
+            json.dumps(self.brain),
+            self.seed,
+            self._core.babbling(),
+            self._threads,
+        )
+        return agent
 
     def to_bytes(self) -> bytes:
         """The bytes of the file that `save` writes."""

@@ -119,7 +119,7 @@ def named_agent(
             from the current folder (see `own_agent`).
         env_id: Environment to act in. If not given, BabbleReachPattern-v0, or BabbleGrasp-v0 for an
             agent that has learnt to grasp. A class of your own needs it unless it has an attribute
-            `env`; a zip needs it, and the option `control`, unless `train_ppo` trained the model.
+            `env`; a zip needs it, and the option `control`, unless `train_tuned` trained the model.
         config: Config of body and task; the one it learnt on, or "paper", if not given.
         seed: Seed of an agent that takes one.
         options: Further options of the environment.

@@ -15,7 +15,7 @@ from gym_babble.cli.evaluate import evaluate
 from gym_babble.cli.export import export
 from gym_babble.cli.info import info
 from gym_babble.cli.list import list_environments
-from gym_babble.cli.render import render
+from gym_babble.cli.record import record
 from gym_babble.cli.reproduce import reproduce
 from gym_babble.cli.study import study
 from gym_babble.errors import BabbleError, MissingExtraError
@@ -29,7 +29,7 @@ app = typer.Typer(
     rich_markup_mode=None,
 )
 app.command("list")(list_environments)
-for command in (info, babble, evaluate, compare, render, export, doctor):
+for command in (info, babble, evaluate, compare, record, export, doctor):
     app.command()(command)
 app.add_typer(reproduce, name="reproduce")
 app.add_typer(study, name="study")

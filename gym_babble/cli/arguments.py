@@ -64,7 +64,7 @@ EnvId = Annotated[
     typer.Option(
         help="Environment of the test. Default: the agent's own; BabbleReachPattern-v0 for agents "
         "by name and for a file of an agent that babbled reaching. Needed for module:Class without "
-        "`env`, and for a zip that train_ppo did not make."
+        "`env`, and for a zip that train_tuned did not make."
     ),
 ]
 ControlName = Annotated[

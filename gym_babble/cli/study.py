@@ -1,5 +1,6 @@
 """`gym-babble study`."""
 
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 from threading import Lock
@@ -8,7 +9,9 @@ from typing import Annotated, Any
 import typer
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from gym_babble.cli.output import messages, print_results, say
+from gym_babble.cli.output import messages, name_files, print_results, say
+from gym_babble.files import check_folder
+from gym_babble.report.writing import REPORT_FILES, write_report
 from gym_babble.study.engine import run_study
 from gym_babble.study.results import task_table
 from gym_babble.study.run import RunSpec, runs_of
@@ -23,6 +26,14 @@ study = typer.Typer(help="Run, resume and report a study.", no_args_is_help=True
 
 Jobs = Annotated[
     int | None, typer.Option(min=1, help="Runs at a time. Default: one for each processor.")
+]
+
+Engine = Annotated[
+    str, typer.Option(help="local: processes on this machine. ray: the machines of a Ray cluster.")
+]
+Address = Annotated[
+    str | None,
+    typer.Option(help="Address of the Ray cluster; auto: the one that this machine is part of."),
 ]
 
 
@@ -77,11 +88,17 @@ class StudyBar:
         self._bar.stop()
 
 
-def run_with_bar(study: Study, folder: Path, jobs: int | None) -> Store:
+def run_with_bar(
+    study: Study,
+    folder: Path,
+    jobs: int | None,
+    engine: str = "local",
+    address: str | None = None,
+) -> Store:
     """Runs what is missing of a study, and shows how it goes on."""
     bar = StudyBar()
     try:
-        return run_study(study, folder, bar, jobs=jobs)
+        return run_study(study, folder, bar, jobs=jobs, engine=engine, address=address)
     finally:
         bar.close()
 
@@ -94,17 +111,23 @@ def run(
     *,
     folder: Annotated[Path, typer.Option("--out", help="Folder of the study.")],
     jobs: Jobs = None,
+    engine: Engine = "local",
+    address: Address = None,
 ) -> None:
     """Run a study, or what is missing of it: each finished run is stored at once."""
-    _run(read_study(spec), folder, jobs)
+    _run(read_study(spec), folder, jobs, engine, address)
 
 
 @study.command("resume")
 def resume(
-    folder: Annotated[Path, typer.Argument(help="Folder of the study.")], *, jobs: Jobs = None
+    folder: Annotated[Path, typer.Argument(help="Folder of the study.")],
+    *,
+    jobs: Jobs = None,
+    engine: Engine = "local",
+    address: Address = None,
 ) -> None:
     """Go on with the study in a folder."""
-    _run(Store(folder).study(), folder, jobs)
+    _run(Store(folder).study(), folder, jobs, engine, address)
 
 
 @study.command("show")
@@ -113,6 +136,19 @@ def show(folder: Annotated[Path, typer.Argument(help="Folder of the study.")]) -
     store = Store(folder)
     found = store.study()
     _print(found, store.runs())
+
+
+@study.command("report")
+def report(
+    folder: Annotated[Path, typer.Argument(help="Folder of the study.")],
+    *,
+    out: Annotated[Path, typer.Option(help="Folder for the page, its numbers and charts.")],
+) -> None:
+    """Write a study as a page, with its numbers as JSON and CSV and its charts as SVG."""
+    check_folder(out, "--out", REPORT_FILES)
+    command = shlex.join(["gym-babble", "study", "report", str(folder), "--out", str(out)])
+    say("writing the report")
+    name_files(write_report(Store(folder), out, command))
 
 
 @study.command("list")
@@ -126,8 +162,8 @@ def list_studies() -> None:
     print_results(table)
 
 
-def _run(study: Study, folder: Path, jobs: int | None) -> None:
-    store = run_with_bar(study, folder, jobs)
+def _run(study: Study, folder: Path, jobs: int | None, engine: str, address: str | None) -> None:
+    store = run_with_bar(study, folder, jobs, engine, address)
     runs = store.runs(runs_of(study))
     _print(study, runs)
     if not all(run.finished for run in runs):

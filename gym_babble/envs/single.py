@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import gymnasium
 
 from gym_babble import _core
+from gym_babble.checks import check_whole
 from gym_babble.envs.interface import RENDER_MODES, Interface, document
 from gym_babble.envs.making import Made, time_limit
 from gym_babble.envs.member import BatchMember
@@ -161,6 +162,29 @@ class BabbleEnv(Made, gymnasium.Env[Any, Any]):
             if self.render_mode == "human" and self._member.ready:
                 return self._show()
             return self._member.render()
+
+    @property
+    def moments(self) -> int:
+        """Recorded moments of the episode: its start, and each control step; for `picture`.
+
+        There are none unless the environment has a render_mode or `record=True`.
+        """
+        return self._batch.moments(0)
+
+    def picture(self, camera: str, size: tuple[int, int], moment: int) -> NDArray[np.uint8]:
+        """A picture (height, width, 3) of a recorded moment.
+
+        Args:
+            camera: As the option `camera`.
+            size: Width and height [pixel].
+            moment: 0 for the start, up to `moments` − 1.
+
+        Raises:
+            ConfigError: There is no such camera or moment, or the size is out of bounds.
+        """
+        with self._batch:
+            check_whole("moment", moment, 0, self.moments - 1, "recorded moments")
+            return self._batch.render(0, camera, *size, moment)
 
     def _show(self) -> None:
         if self._window is None:

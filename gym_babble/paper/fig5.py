@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from gym_babble.agents import HebbBabbling
 
-__all__ = ["WeightSets", "draw", "weight_sets"]
+__all__ = ["WeightSets", "draw", "strongest_gaze", "weight_sets"]
 
 
 @dataclass(frozen=True)
@@ -33,6 +33,8 @@ class WeightSets:
     """Input neurons (rows, columns) whose weights alone produce a movement that curves left."""
     right: NDArray[np.bool_]
     """Input neurons (rows, columns) whose weights alone produce one that curves right."""
+    field_deg: float
+    """Greatest azimuth and elevation of the obstacle in the input map [deg]."""
 
     def mean(self, members: NDArray[np.bool_]) -> NDArray[np.float32]:
         """Mean weights (b2, b1) of a set."""
@@ -54,20 +56,26 @@ class WeightSets:
         return float(np.corrcoef(left.ravel(), right.T.ravel())[0, 1])
 
 
-def weight_sets(agent: HebbBabbling) -> WeightSets:
+def weight_sets(agent: HebbBabbling, *, gaze: tuple[int, int] | None = None) -> WeightSets:
     """Divides the input neurons by how a movement from their weights alone would curve.
 
     Neurons whose weights are all below half of w_max belong to neither set: they have seen too few
     obstacles.
 
+    Args:
+        agent: An agent of reaching.
+        gaze: For variant "conjunctive", the neurons (row, column) of the eye's map whose pairs with
+            the obstacle's map are shown.
+
     Raises:
         ConfigError: The agent has another input map than the obstacle's, or has not learnt.
     """
-    if len(agent.input_shape) != 2:
-        raise ConfigError("Fig. 5 needs the paper's input map: use variant 'paper'")
-    weights = agent.weights["weights"]
-    side = round(len(weights) ** 0.5)
-    patterns = weights.T.reshape(*agent.input_shape, side, side)
+    patterns = _patterns(agent)
+    if patterns.ndim != 4:
+        if gaze is None:
+            raise ConfigError("Fig. 5 needs the paper's input map: use variant 'paper', or gaze")
+        patterns = patterns[gaze]
+    side = patterns.shape[-1]
     activity = np.maximum(np.tanh(patterns), 0.0)  # Eq. 4 for one active input neuron.
     b1 = (activity * np.linspace(0.0, 1.0, side)).sum((2, 3))
     b1 = b1 / np.maximum(activity.sum((2, 3)), 1e-9)
@@ -75,7 +83,21 @@ def weight_sets(agent: HebbBabbling) -> WeightSets:
     left, right = taught & (b1 > 0.5), taught & (b1 <= 0.5)
     if not (left.any() and right.any()):
         raise ConfigError("the agent has not learnt both curves yet: babble more movements")
-    return WeightSets(patterns, left, right)
+    return WeightSets(patterns, left, right, float(agent.brain["obstacle_field_deg"]))
+
+
+def strongest_gaze(agent: HebbBabbling) -> tuple[int, int]:
+    """The neurons (row, column) of the eye's map with the strongest weights, of "conjunctive"."""
+    strength = np.abs(_patterns(agent)).sum((2, 3, 4, 5))
+    row, column = np.unravel_index(int(strength.argmax()), strength.shape)
+    return int(row), int(column)
+
+
+def _patterns(agent: HebbBabbling) -> NDArray[np.float32]:
+    """Weights to the output map, of each input neuron: (axes of the input map, b2, b1)."""
+    weights = agent.weights["weights"]
+    side = round(len(weights) ** 0.5)
+    return weights.T.reshape(*agent.input_shape, side, side)
 
 
 @styled
@@ -105,11 +127,13 @@ def _draw_sets(ax: Axes, sets: WeightSets) -> None:
 
     members = np.where(sets.left, 1, np.where(sets.right, 2, 0))
     colours = ListedColormap(["#eef1f4", LEFT, RIGHT])
-    ax.imshow(members, origin="lower", extent=(-60, 60, -60, 60), cmap=colours, vmin=0, vmax=2)
+    field = sets.field_deg
+    ax.imshow(members, origin="lower", extent=(-field, field) * 2, cmap=colours, vmin=0, vmax=2)
+    ticks = (-field, 0, field)
     ax.set(
         title="Input neurons",
         xlabel="obstacle, azimuth [°]",
         ylabel="elevation [°]",
-        xticks=(-60, 0, 60),
-        yticks=(-60, 0, 60),
+        xticks=ticks,
+        yticks=ticks,
     )

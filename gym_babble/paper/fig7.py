@@ -13,7 +13,7 @@ from gym_babble.agents.base import predictor
 from gym_babble.agents.loading import acting_agent
 from gym_babble.progress import track
 from gym_babble.study.evaluation import for_cases
-from gym_babble.viz.style import FAINT, INK, LEFT, RED, row_of_axes, styled
+from gym_babble.viz.style import FAINT, INK, LEFT, OBJECT, RED, row_of_axes, styled
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -88,7 +88,7 @@ def draw(movements: Sequence[PalmTrajectory], last_m: float = 0.06) -> Figure:
     for ax, diameter in zip(axes, diameters, strict=True):
         chosen = [one for one in movements if one.case["diameter"] == diameter]
         for x, y in sorted({one.case["object"] for one in chosen}):
-            circle = Circle((100 * x, 100 * y), 50 * diameter, fc="#fbe3e0", ec=RED, lw=0.8)
+            circle = Circle((100 * x, 100 * y), 50 * diameter, fc=OBJECT, ec=RED, lw=0.8)
             ax.add_patch(circle)
         for one in chosen:
             _draw_final_portion(ax, one, last_m)

@@ -10,22 +10,23 @@ import numpy as np
 from gym_babble.agents.loading import acting_agent
 from gym_babble.report.html import figure_html, png_source
 from gym_babble.study.comparison import TrainedResult
-from gym_babble.viz.film import contact_sheet, png, record
+from gym_babble.viz.episode import play
+from gym_babble.viz.video import contact_sheet, png
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from gym_babble.study.comparison import Comparison
     from gym_babble.study.scenarios import GraspScenario, Scenario
-    from gym_babble.viz.film import Film
+    from gym_babble.viz.episode import Episode
 
 __all__ = ["grasp_section", "movement_section"]
 
 
 def _filmed(
     comparison: Comparison, worth: Callable[[Any], float], why: str
-) -> tuple[str, Film, bytes] | None:
-    """A film of the first trained agent's success that shows most.
+) -> tuple[str, Episode, bytes] | None:
+    """The first trained agent's success that shows most.
 
     Args:
         comparison: The comparison.
@@ -33,7 +34,7 @@ def _filmed(
         why: Says in words which case has the highest worth.
 
     Returns:
-        A paragraph on what is shown and how it was chosen, the film, and the eye's view before;
+        A paragraph on what is shown and how it was chosen, the episode, and the eye's view before;
         None without trained agents.
     """
     played = [result for result in comparison.results if isinstance(result, TrainedResult)]
@@ -46,15 +47,15 @@ def _filmed(
     solved = [case for case, outcome in outcomes if outcome == "success"]
     case: Any = max(solved or test.cases, key=worth)
     loaded = acting_agent(trained.agent, trained.env_id, comparison.settings.config)
-    film = record(loaded, options={"scenario": case}, size=600)
-    eye = record(loaded, options={"scenario": case}, camera="eye", size=630).frames[0]
+    episode = play(loaded, case)
+    eye = episode.env.picture("eye", (630, 630), 0)
     tests = f"{len(test.cases):,} tests"
     among = f"{len(solved):,} successes in {tests}" if solved else f"{tests} without a success"
-    title, outcome = escape(result.contender.title), film.outcome.replace("_", " ")
+    title, outcome = escape(result.contender.title), episode.outcome.replace("_", " ")
     said = (
         f"<p>{title}, seed 0, on case {case['index']}: {outcome}. Chosen from {among}: {why}.</p>\n"
     )
-    return said, film, png(eye)
+    return said, episode, png(eye)
 
 
 def movement_section(comparison: Comparison) -> str:
@@ -62,8 +63,10 @@ def movement_section(comparison: Comparison) -> str:
     filmed = _filmed(comparison, _visibility, "a long way in the middle of the picture")
     if filmed is None:
         return ""
-    said, film, eye = filmed
-    near = [frame[60:400, 80:420] for frame in film.frames]  # The arm stays in the middle.
+    said, episode, eye = filmed
+    near = [
+        picture[60:400, 80:420] for picture in episode.pictures(600)
+    ]  # The arm stays in the middle.
     return (
         f"<h2>A movement</h2>\n{said}"
         '<div class="photos">'
@@ -88,7 +91,7 @@ def grasp_section(comparison: Comparison) -> str:
     filmed = _filmed(comparison, _size, "the first of the biggest objects")
     if filmed is None:
         return ""
-    said, film, eye = filmed
+    said, episode, eye = filmed
     return (
         f"<h2>A grasp</h2>\n{said}"
         '<div class="photos">'
@@ -96,7 +99,9 @@ def grasp_section(comparison: Comparison) -> str:
             png_source(eye),
             "The eye's view before the grasp: 630 × 630 pixels, 120°, on the object.",
         )
-        + figure_html(png_source(png(contact_sheet(film.frames))), "The grasp, row by row.")
+        + figure_html(
+            png_source(png(contact_sheet(episode.pictures(600)))), "The grasp, row by row."
+        )
         + "</div>\n"
     )
 

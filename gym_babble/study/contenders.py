@@ -9,7 +9,9 @@ import gymnasium
 
 from gym_babble.agents import HebbBabbling, Oracle, Random, Scripted
 from gym_babble.agents.loading import own_agent, own_class
-from gym_babble.study.learning import VALIDATION_CASES, CurvePoint, CurveRecorder, Trained
+from gym_babble.study.learning import CurveRecorder, Trained
+from gym_babble.study.roster import ROSTER, trainer_for
+from gym_babble.study.trainers.base import Order
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,6 +27,9 @@ GRASPING = "BabbleGrasp-v0"
 
 # Accepted trials at which a curve has a point; multiples of an agent's learning step.
 LEGAL_MOVEMENTS = (250, 500, 1_000, 2_000, 5_000, 10_000, 20_000)
+
+VALIDATIONS = 10
+"""Points of PPO's curve."""
 
 KEPT_BABBLES = (50, 100, 250, 500, 1_000)
 
@@ -48,7 +53,7 @@ class Settings:
     babbles: int = 1_000
     """Babbles that the Hebb agent of grasping learns from."""
     ppo_steps: int | None = None
-    """Steps that PPO learns from; the preset's by default."""
+    """Control steps that PPO learns from; the roster's by default."""
     progress_bar: bool = False
     """Show progress bars."""
 
@@ -92,27 +97,29 @@ def _hebb(env_id: str, variant: str = "paper") -> Callable[[Settings, int], Trai
     return train
 
 
-def _ppo(preset: str) -> Callable[[Settings, int], Trained]:
+def _ppo(name: str) -> Callable[[Settings, int], Trained]:
     def train(settings: Settings, seed: int) -> Trained:
-        from gym_babble.study.ppo import one_thread, train_ppo  # noqa: PLC0415 - it loads PyTorch
+        place = ROSTER[name].tasks[settings.task]
+        budget = settings.ppo_steps or place.budget
+        order = Order(task=settings.task, seed=seed, budget=budget, config=settings.config)
+        trainer = trainer_for(name, order)
+        recorder = CurveRecorder(place.env_id, settings.config, range(1, VALIDATIONS + 1), 1)
+        passed = 0
 
-        ppo = train_ppo(
-            preset,
-            config=settings.config,
-            seed=seed,
-            steps=settings.ppo_steps,
-            validation_cases=VALIDATION_CASES,
-            progress_bar=settings.progress_bar,
-        )
-        steps = ppo.control_steps // ppo.agent.num_timesteps
+        def pause() -> None:
+            nonlocal passed
+            before, done = passed, trainer.cost.control_steps
+            passed = min(VALIDATIONS, done * VALIDATIONS // budget)
+            recorder.note(trainer.agent, done, passed if passed > before else 0)
+
+        trainer.train(budget, pause)
         return Trained(
-            agent=ppo.agent,
-            env_id=ppo.env_id,
-            trials=ppo.movements,
-            control_steps=ppo.control_steps,
-            seconds=ppo.seconds,
-            curve=tuple(CurvePoint(p.steps * steps, p.seconds, p.success) for p in ppo.curve),
-            while_acting=one_thread,
+            agent=trainer.agent,
+            env_id=place.env_id,
+            trials=trainer.cost.trials,
+            control_steps=trainer.cost.control_steps,
+            seconds=recorder.seconds,
+            curve=tuple(recorder.curve),
         )
 
     return train
@@ -137,11 +144,9 @@ CONTENDERS = {
         Contender(
             "hebb-conjunctive", "Hebb conjunctive", "obstacle × eye", _hebb(PATTERN, "conjunctive")
         ),
-        Contender("ppo-obstacle", "PPO pattern", "obstacle only", _ppo("pattern_obstacle")),
-        Contender("ppo-pattern", "PPO pattern", "all senses", _ppo("pattern")),
-        Contender(
-            "ppo-posture", "PPO delta_posture", "all senses", _ppo("delta_posture"), slow_test=True
-        ),
+        Contender("ppo-obstacle", "PPO pattern", "obstacle only", _ppo("ppo-obstacle")),
+        Contender("ppo-pattern", "PPO pattern", "all senses", _ppo("ppo-pattern")),
+        Contender("ppo-posture", "PPO delta_posture", "all senses", _ppo("ppo"), slow_test=True),
         Contender(
             "random",
             "Random",
@@ -169,7 +174,7 @@ CONTENDERS = {
             "ppo-posture",
             "PPO delta_posture",
             "all senses",
-            _ppo("grasp"),
+            _ppo("ppo"),
             slow_test=True,
             opt_in=True,
         ),

@@ -1,4 +1,7 @@
-"""Runs a study: which runs are missing, and processes that do them side by side."""
+"""Runs a study: which runs are missing, and processes that do them side by side.
+
+`gym_babble.study.ray_engine` does them on several machines.
+"""
 
 from __future__ import annotations
 
@@ -8,10 +11,11 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from tempfile import TemporaryFile
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING
 
-from gym_babble.checks import check_whole, processors
-from gym_babble.errors import StudyError
+from gym_babble.checks import check_choice, check_whole, processors, shown
+from gym_babble.errors import ConfigError, StudyError
+from gym_babble.study.ray_engine import run_on_ray
 from gym_babble.study.run import failed, runs_of
 from gym_babble.study.store import Store
 
@@ -21,8 +25,12 @@ if TYPE_CHECKING:
 
     from gym_babble.study.run import RunSpec
     from gym_babble.study.spec import Study
+    from gym_babble.study.watch import Watch
 
-__all__ = ["Watch", "run_here", "run_study"]
+__all__ = ["ENGINES", "run_here", "run_study"]
+
+ENGINES = ("local", "ray")
+"""What can do the runs of a study."""
 
 # One thread for each run: more would only wait for each other.
 ONE_THREAD = dict.fromkeys(
@@ -32,25 +40,14 @@ LAST_WORDS = 2_000
 """Letters of a dead process's messages that are kept."""
 
 
-class Watch(Protocol):
-    """Hears how a study goes on. Its methods are called from several threads."""
-
-    def begin(self, waiting: Sequence[RunSpec], done: int, unfit: Sequence[str]) -> None:
-        """Which runs will be done, how many are done already, and what does not fit."""
-
-    def progress(self, spec: RunSpec, share: float) -> None:
-        """What share of a run's learning is done."""
-
-    def end(self, spec: RunSpec, record: dict[str, Any]) -> None:
-        """A run is finished, or has failed."""
-
-
 def run_study(
     study: Study,
     folder: str | Path,
     watch: Watch,
     *,
     jobs: int | None = None,
+    engine: str = "local",
+    address: str | None = None,
 ) -> Store:
     """Does the runs of a study that its folder does not have yet, and those that failed.
 
@@ -60,21 +57,39 @@ def run_study(
         study: The study.
         folder: Its folder; created if missing.
         watch: Hears how it goes on.
-        jobs: Runs at a time, each in a process with one thread; one for each processor if not
-            given.
+        jobs: Runs at a time on this machine, each in a process with one thread; one for each
+            processor if not given.
+        engine: One of `ENGINES`: "local" for this machine, "ray" for a cluster of Ray.
+        address: Address of the cluster; as for `run_on_ray`.
 
     Raises:
-        ConfigError: An unknown agent, or a number out of bounds.
-        StudyError: The folder is of another study or version.
+        ConfigError: An unknown agent or engine, a number out of bounds, or an argument that the
+            engine does not take.
+        ConnectionError: There is no cluster at the address.
+        MissingExtraError: The engine is "ray", and Ray is not installed.
+        StudyError: The folder is of another study or version, or a node of the cluster is.
         OSError: A file cannot be written.
     """
-    jobs = check_whole("jobs", processors() if jobs is None else jobs, 1, 1_024, "jobs")
+    jobs = _check_engine(engine, jobs, address)
     store, specs = Store(folder), runs_of(study)
     store.open(study)
     waiting = [run.spec for run in store.runs(specs) if not run.finished]
     watch.begin(waiting, len(specs) - len(waiting), store.unfit(specs))
-    run_here(waiting, store, watch, jobs)
+    if engine == "ray":
+        run_on_ray(waiting, store, watch, address, ONE_THREAD)
+    else:
+        run_here(waiting, store, watch, jobs)
     return store
+
+
+def _check_engine(engine: str, jobs: int | None, address: str | None) -> int:
+    """The number of jobs on this machine, if the engine takes the arguments."""
+    check_choice("engine", engine, ENGINES)
+    if engine == "ray" and jobs is not None:
+        raise ConfigError(f"jobs = {shown(jobs)}: a cluster of Ray uses all its processors")
+    if engine == "local" and address is not None:
+        raise ConfigError(f"address = {shown(address)}: only engine 'ray' takes one")
+    return check_whole("jobs", processors() if jobs is None else jobs, 1, 1_024, "jobs")
 
 
 def run_here(waiting: Sequence[RunSpec], store: Store, watch: Watch, jobs: int) -> None:

@@ -26,9 +26,17 @@ if TYPE_CHECKING:
     from gym_babble.agents.loading import LoadedAgent
     from gym_babble.config import ConfigLike
     from gym_babble.envs import BabbleVectorEnv
+    from gym_babble.envs.registry import Protocol
     from gym_babble.study.scenarios import GraspScenario, Scenario
 
-__all__ = ["default_cases", "evaluate", "for_cases", "play_cases"]
+__all__ = [
+    "default_cases",
+    "default_protocol",
+    "evaluate",
+    "for_cases",
+    "needs_goals",
+    "play_cases",
+]
 
 ENVS = 250
 """Environments of a batch."""
@@ -128,16 +136,21 @@ def default_cases(
     arguments: EnvArguments, n: int = 1_000, seed: int = 0, split: str = "test"
 ) -> list[Any]:
     """The cases that results in an environment are reported on."""
-    protocol = next(
+    goal = needs_goals(arguments)
+    protocol = default_protocol(arguments).name
+    return scenarios(protocol, n, seed, split=split, config=arguments.config, goal=goal)
+
+
+def default_protocol(arguments: EnvArguments) -> Protocol:
+    """The protocol of the cases that results in an environment are reported on."""
+    return next(
         one
         for one in task_entry(arguments.task).protocols.values()
         if all(arguments.option(name) == value for name, value in one.presets.items())
     )
-    goal = _needs_goals(arguments)
-    return scenarios(protocol.name, n, seed, split=split, config=arguments.config, goal=goal)
 
 
-def _needs_goals(arguments: EnvArguments) -> bool:
+def needs_goals(arguments: EnvArguments) -> bool:
     """Whether a case has a goal of its own, in the goal form."""
     parts = {part.name for part in task_entry(arguments.task).case_parts}
     return arguments.option("obs") == "goal" and "goal" in parts
@@ -159,7 +172,7 @@ def for_cases(
     Raises:
         ConfigError: The goal form, and cases without goals.
     """
-    if _needs_goals(arguments) and any("goal" not in case for case in cases):
+    if needs_goals(arguments) and any("goal" not in case for case in cases):
         raise ConfigError(
             f"{arguments.title} needs cases with goals: scenarios(protocol, ..., goal=True)"
         )

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import difflib
 import importlib
+import re
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gym_babble.errors import ConfigError
@@ -22,6 +24,10 @@ if TYPE_CHECKING:
 __all__ = ["ROSTER", "Place", "RosterAgent", "roster_agent", "trainer_for"]
 
 PATTERN, REACH, GRASP = "BabbleReachPattern-v0", "BabbleReach-v0", "BabbleGrasp-v0"
+
+GOAL = "BabbleReachGoal-v0"
+
+TUNED = Path(__file__).parent / "tuned"
 
 REFLEX = "enclosure reflex"
 IN_HAND = "objects placed in the hand"
@@ -56,11 +62,17 @@ class RosterAgent:
     settings: Mapping[str, Any] = field(default_factory=dict)
     seeded: bool = True
     """Whether it depends on the seed; if not, one run is enough."""
+    in_compare: bool = True
+    """Whether `gym-babble compare` includes it unless agents are named."""
 
-    @property
-    def learns(self) -> bool:
-        """Whether it learns."""
-        return any(place.budget for place in self.tasks.values())
+    def tuned(self, env_id: str) -> str:
+        """The text of its tuned settings in an environment; empty if it has none in a file."""
+        module, _, algorithm = self.trainer.partition(":")
+        if module != "sb3":
+            return ""
+        text = (TUNED / f"{algorithm}.yml").read_text(encoding="utf-8")
+        found = re.search(rf"^{re.escape(env_id)}:\n((?: .*\n?|\n)*)", text, re.MULTILINE)
+        return found[1] if found else ""
 
 
 ROSTER = {
@@ -88,6 +100,7 @@ ROSTER = {
             "grasp": Place(GRASP, 160_000, (REFLEX, IN_HAND)),
         },
         sees="obstacle × eye; eye and fovea",
+        in_compare=False,
     ),
     "goal-babbling": RosterAgent(
         title="Goal babbling",
@@ -97,12 +110,14 @@ ROSTER = {
             "grasp": Place(GRASP, 160_000, (REFLEX, IN_HAND)),
         },
         sees="obstacle × eye; eye",
+        in_compare=False,
     ),
     "reward-hebb": RosterAgent(
         title="Reward-modulated Hebb",
         trainer="babbling:reward_hebb",
         tasks={"reach": Place(PATTERN, 24_400_000, (GENERATORS,))},
         sees="obstacle × eye",
+        in_compare=False,
     ),
     "shuffled-pairs": RosterAgent(
         title="Hebb, shuffled pairs",
@@ -113,6 +128,7 @@ ROSTER = {
         },
         sees="obstacle; eye and fovea",
         settings={"shuffled": True},
+        in_compare=False,
     ),
     "reflex-only": RosterAgent(
         title="Reflex only",
@@ -120,6 +136,62 @@ ROSTER = {
         tasks={"grasp": Place(GRASP, 0, (REFLEX,))},
         sees="touch",
         settings={"name": "reflex-only"},
+        in_compare=False,
+    ),
+    "ppo": RosterAgent(
+        title="PPO step by step",
+        trainer="sb3:ppo",
+        tasks={"reach": Place(REACH, 1_000_000), "grasp": Place(GRASP, 2_500_000)},
+        sees="all",
+        in_compare=False,
+    ),
+    "ppo-pattern": RosterAgent(
+        title="PPO whole movements",
+        trainer="sb3:ppo",
+        tasks={"reach": Place(PATTERN, 3_670_016, (GENERATORS,))},
+        sees="all",
+    ),
+    "ppo-obstacle": RosterAgent(
+        title="PPO whole movements, obstacle only",
+        trainer="sb3:ppo",
+        tasks={"reach": Place(PATTERN, 3_670_016, (GENERATORS,))},
+        sees="obstacle",
+        settings={"senses": ["obstacle"]},
+    ),
+    "ppo-eye-obstacle": RosterAgent(
+        title="PPO whole movements, obstacle and eye",
+        trainer="sb3:ppo",
+        tasks={"reach": Place(PATTERN, 3_670_016, (GENERATORS,))},
+        sees="obstacle, eye",
+        settings={"senses": ["eye", "obstacle"]},
+    ),
+    "ppo-reflex": RosterAgent(
+        title="PPO step by step, with the reflex",
+        trainer="sb3:ppo",
+        tasks={"grasp": Place(GRASP, 2_500_000, (REFLEX,))},
+        sees="all",
+        options={"enclosure_reflex": True},
+        in_compare=False,
+    ),
+    "sac": RosterAgent(
+        title="SAC whole movements",
+        trainer="sb3:sac",
+        tasks={"reach": Place(PATTERN, 896_000, (GENERATORS,))},
+        sees="all",
+    ),
+    "sac-her": RosterAgent(
+        title="SAC + HER whole movements",
+        trainer="sb3:sac",
+        tasks={"reach": Place(GOAL, 896_000, (GENERATORS,))},
+        sees="all",
+        in_compare=False,
+    ),
+    "td3": RosterAgent(
+        title="TD3 whole movements",
+        trainer="sb3:td3",
+        tasks={"reach": Place(PATTERN, 896_000, (GENERATORS,))},
+        sees="all",
+        in_compare=False,
     ),
     "random": RosterAgent(
         title="Random",

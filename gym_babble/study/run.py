@@ -5,7 +5,7 @@ from __future__ import annotations
 import datetime as dt
 import json
 import traceback
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from hashlib import sha256
 from time import perf_counter, process_time
 from typing import TYPE_CHECKING, Any
@@ -47,6 +47,8 @@ class RunSpec:
     seed: int
     budget: int
     """Control steps to learn from; 0 for an agent that does not learn."""
+    tuned: str = ""
+    """Hash of its tuned settings, if a file has them."""
 
     @property
     def name(self) -> str:
@@ -60,6 +62,7 @@ class RunSpec:
         whole = {
             "task": {"name": self.task_name, **task},
             "agent": {**agent, "budget": self.budget},
+            "tuned": self.tuned,
             "seed": self.seed,
         }
         return json.loads(json.dumps(whole))  # type: ignore[no-any-return]
@@ -75,6 +78,7 @@ class RunSpec:
             agent=StudyAgent(**document["agent"]),
             seed=document["seed"],
             budget=document["agent"]["budget"],
+            tuned=document["tuned"],
         )
 
     @property
@@ -138,14 +142,21 @@ def _seeds_of(
     task = study.tasks[name]
     budget = agent.budget or task.budget or 0
     seeds = agent.seeds or study.seeds
+    tuned = ""
     if entry is not None:
-        default = entry.tasks[task.task].budget
-        budget = (budget or default) if default else 0
+        place = entry.tasks[task.task]
+        budget = (budget or place.budget) if place.budget else 0
         seeds = seeds if entry.seeded else seeds[:1]
-    return [
-        (turn, RunSpec(task_name=name, task=task, agent=agent, seed=seed, budget=budget))
-        for turn, seed in enumerate(seeds)
-    ]
+        agent = replace(
+            agent,
+            env_id=agent.env_id or place.env_id,
+            options={**entry.options, **agent.options},
+            settings={**entry.settings, **agent.settings},
+        )
+        text = entry.tuned(str(agent.env_id))
+        tuned = sha256(text.encode()).hexdigest()[:12] if text else ""
+    run = RunSpec(task_name=name, task=task, agent=agent, seed=0, budget=budget, tuned=tuned)
+    return [(turn, replace(run, seed=seed)) for turn, seed in enumerate(seeds)]
 
 
 def checkpoints(budget: int) -> list[int]:

@@ -1,4 +1,4 @@
-"""Stored studies of PPO: what examples/ppo_study.py writes and `gym-babble compare` shows."""
+"""Stored studies of PPO: `gym-babble compare` shows them."""
 
 from __future__ import annotations
 

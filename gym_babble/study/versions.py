@@ -22,6 +22,7 @@ EXTRAS = {
     "figures": ("matplotlib", "pillow"),
     "human": ("pygame-ce",),
     "video": ("moviepy",),
+    "study": ("jinja2", "scipy"),
 }
 """The extras, with the packages of each."""
 

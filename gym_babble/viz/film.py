@@ -1,151 +1,111 @@
-"""Pictures of an episode: frames, contact sheets, GIF and MP4."""
+"""Agents side by side on the same cases, frame by frame."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from io import BytesIO
-from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gym_babble.agents.base import predictor
-from gym_babble.envs.interface import outcome_of
-from gym_babble.errors import MissingExtraError
-from gym_babble.files import write_files
+from gym_babble.viz.panel import PanelSize
+from gym_babble.viz.text import INK, draw_on, font
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
     from numpy.typing import NDArray
 
-    from gym_babble.agents.loading import LoadedAgent
+    from gym_babble.viz.panel import Panel
 
-__all__ = ["Film", "contact_sheet", "film_files", "png", "record", "save_film"]
+__all__ = ["Film", "Scene", "panel_width"]
 
-GAP = 6
-"""Width of the white gaps in a contact sheet [pixel]."""
+GAP = 8
+"""Space between panels [pixel]."""
+COLUMNS = 4
+"""Most panels in a row."""
+WIDTH = 1280
+"""Width of a film of several panels [pixel], unless the panels' own is given."""
+SLACK = 1e-6
+"""Share of a frame by which times may be wrong."""
+HOLD_S = 1.5
+"""How long the last picture of a case stands still [s]."""
+
+
+def panel_width(panels: int) -> int:
+    """Width at which so many panels fit into 1280 pixels, and 480 at most; even."""
+    columns = min(panels, COLUMNS)
+    return min(480, (WIDTH - (columns - 1) * GAP) // columns // 2 * 2)
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One case, played by each agent."""
+
+    panels: Sequence[Panel]
+    caption: str = ""
+    """A line below the panels."""
 
 
 @dataclass(frozen=True)
 class Film:
-    """The frames of one episode."""
+    """Scenes one after the other. Frames are drawn when they are asked for.
 
-    frames: list[NDArray[np.uint8]]
-    """Pictures (height, width, 3), one for each control step."""
-    fps: int
-    """Frames per second, in real time."""
-    outcome: str
-    """How the episode ended."""
-
-
-def record(
-    loaded: LoadedAgent,
-    *,
-    seed: int = 0,
-    options: dict[str, Any] | None = None,
-    camera: str = "third_person",
-    size: int = 480,
-) -> Film:
-    """Plays one episode and takes a picture at each control step.
-
-    Args:
-        loaded: The agent and its environment.
-        seed: Seed of the episode.
-        options: Options of `reset`, for a case of your own.
-        camera: Camera of the environment.
-        size: Width and height of the pictures [pixel].
+    Agents act in the same simulated time, and one that has ended stands still.
     """
-    env = loaded.arguments.single("rgb_array_list", camera=camera, width=size, height=size)
-    predict = predictor(loaded.agent)
-    observation, info = env.reset(seed=seed, options=options)
-    frames, state, start, running = list(env.render()), None, True, True
-    while running:
-        action, state = predict(observation, state, np.array([start]), True)  # noqa: FBT003
-        observation, _, terminated, truncated, info = env.step(action)
-        frames += env.render()
-        start, running = False, not (terminated or truncated)
-    env.close()
-    return Film(frames, env.metadata["render_fps"], outcome_of(info))
 
+    scenes: Sequence[Scene]
+    """The scenes, each with as many panels."""
+    width: int
+    """Width of a panel [pixel], even."""
+    fps: float
+    """Frames per second."""
+    speed: float = 1.0
+    """Simulated time per time of the film."""
 
-def contact_sheet(
-    frames: list[NDArray[np.uint8]], *, columns: int = 3, rows: int = 2
-) -> NDArray[np.uint8]:
-    """One picture of frames at equal intervals, from the first to the last."""
-    chosen = np.linspace(0, len(frames) - 1, columns * rows).round().astype(int)
-    height, width, _ = frames[0].shape
-    down, right = height + GAP, width + GAP
-    sheet = np.full((rows * down - GAP, columns * right - GAP, 3), 255, np.uint8)
-    for k, i in enumerate(chosen.tolist()):
-        top, left = k // columns * down, k % columns * right
-        sheet[top : top + height, left : left + width] = frames[i]
-    return sheet
+    def __len__(self) -> int:
+        """Number of frames."""
+        return sum(map(self._length, self.scenes))
 
+    def __iter__(self) -> Iterator[NDArray[np.uint8]]:
+        """Draws all frames (height, width, 3); height and width are even."""
+        return (self.frame(k) for k in range(len(self)))
 
-def film_files(kind: str) -> tuple[str, str]:
-    """Names of the contact sheet and the film, or its first frame."""
-    return "sheet.png", "frame0000.png" if kind == "png" else f"episode.{kind}"
+    def frame(self, k: int) -> NDArray[np.uint8]:
+        """Draws frame k."""
+        for scene in self.scenes:
+            length = self._length(scene)
+            if k < length:
+                return self._draw(scene, k)
+            k -= length
+        raise IndexError(k)
 
+    def _length(self, scene: Scene) -> int:
+        seconds = max(panel.episode.seconds for panel in scene.panels)
+        # Rounding errors must not add a frame, nor hold back a control step below.
+        return math.ceil(seconds / self.speed * self.fps - SLACK) + round(HOLD_S * self.fps)
 
-def save_film(film: Film, folder: Path, kind: str) -> list[Path]:
-    """Writes a contact sheet and the film, and returns the files.
+    def _draw(self, scene: Scene, k: int) -> NDArray[np.uint8]:
+        size, n = self._panel_size, len(scene.panels)
+        columns = min(n, COLUMNS)
+        rows = math.ceil(n / columns)
+        caption = 2 * size.text if scene.caption else 0
+        down, right = size.height + GAP, size.width + GAP
+        height, width = rows * down - GAP + caption, columns * right - GAP
+        frame = np.full((height + height % 2, width, 3), 255, np.uint8)
+        seconds = k / self.fps * self.speed
+        for i, panel in enumerate(scene.panels):
+            top, left = i // columns * down, i % columns * right
+            moment = math.floor(seconds * panel.episode.control_hz + SLACK)
+            frame[top : top + size.height, left : left + size.width] = panel.draw(moment, size)
+        if scene.caption:
+            strip = frame[height - caption :]
+            with draw_on(strip) as draw:
+                at = (size.margin, caption // 2)
+                draw.text(at, scene.caption, INK, font(size.text), anchor="lm")
+        return frame
 
-    Args:
-        film: The film.
-        folder: Folder for the files; created if missing. Frames of an earlier, longer film are
-            removed.
-        kind: "png" (one file for each frame), "gif" or "mp4".
-
-    Raises:
-        MissingExtraError: Pillow (extra `figures`) or moviepy (extra `video`) is not installed.
-        OSError: The files cannot be written; earlier ones are whole.
-    """
-    files = {"sheet.png": png(contact_sheet(film.frames))}
-    if kind == "mp4":
-        files["episode.mp4"] = _mp4(film)
-    elif kind == "gif":
-        files["episode.gif"] = _gif(film)
-    else:
-        files |= {f"frame{i:04d}.png": png(frame) for i, frame in enumerate(film.frames)}
-    earlier = {path.name for path in folder.glob("frame[0-9][0-9][0-9][0-9].png")}
-    return write_files(folder, files, stale=sorted(earlier - files.keys()))
-
-
-def png(picture: NDArray[np.uint8]) -> bytes:
-    """A picture (height, width, 3) as a PNG file.
-
-    Raises:
-        MissingExtraError: Pillow (extra `figures`) is not installed.
-    """
-    buffer = BytesIO()
-    _pillow().fromarray(picture).save(buffer, "PNG", optimize=True)
-    return buffer.getvalue()
-
-
-def _gif(film: Film) -> bytes:
-    image, buffer = _pillow(), BytesIO()
-    pictures = [image.fromarray(frame) for frame in film.frames]
-    duration = round(1000 / film.fps)
-    pictures[0].save(
-        buffer, "GIF", save_all=True, append_images=pictures[1:], duration=duration, loop=0
-    )
-    return buffer.getvalue()
-
-
-def _mp4(film: Film) -> bytes:
-    try:
-        from moviepy import ImageSequenceClip
-    except ImportError as error:
-        raise MissingExtraError("moviepy", "video") from error
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / "episode.mp4"
-        ImageSequenceClip(film.frames, fps=film.fps).write_videofile(str(path), logger=None)
-        return path.read_bytes()
-
-
-def _pillow() -> Any:
-    try:
-        from PIL import Image  # noqa: PLC0415 - an extra brings it
-    except ImportError as error:
-        raise MissingExtraError("pillow", "figures") from error
-    return Image
+    @property
+    def _panel_size(self) -> PanelSize:
+        maps = [panel.maps.rows for scene in self.scenes for panel in scene.panels if panel.maps]
+        return PanelSize(self.width, max(maps, default=0))

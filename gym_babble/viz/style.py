@@ -18,8 +18,10 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FAINT",
+    "GRID",
     "INK",
     "LEFT",
+    "OBJECT",
     "RED",
     "RIGHT",
     "check_format",
@@ -32,9 +34,11 @@ __all__ = [
 P = ParamSpec("P")
 T = TypeVar("T")
 
-INK, FAINT, RED = "#1f2933", "#9aa5b1", "#b42318"
+INK, FAINT, GRID, RED = "#1f2933", "#9aa5b1", "#e4e7eb", "#b42318"
 
 LEFT, RIGHT = "#1f6fb2", "#c2571a"
+
+OBJECT = "#fbe3e0"
 
 STYLE: Any = {
     "font.size": 9,

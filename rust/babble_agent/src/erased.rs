@@ -16,7 +16,7 @@ use crate::grasp::babbling::POSTURES;
 use crate::grasp::policy::{self as grasping, GraspPolicy, RandomActions};
 use crate::grasp::{self, GraspNetwork};
 use crate::learner::Learner;
-use crate::network::{Network, Recall};
+use crate::network::{Network, Percept, Recall};
 use crate::policy::{Decisions, Policy, Random};
 use crate::reach::ReachNetwork;
 use crate::reach::policy::{self as reaching, ReachPolicy};
@@ -149,6 +149,9 @@ pub trait AnyLearner: Any + fmt::Debug + Send + Sync {
     /// As [`Network::input_shapes`].
     fn input_shapes(&self) -> Vec<Vec<usize>>;
 
+    /// As [`Network::perceive_maps`].
+    fn perceive(&self, senses: &[f32]) -> Result<Vec<Percept>, AgentError>;
+
     /// As [`Network::recall_maps`].
     fn recall(&self, senses: &[f32]) -> Result<Vec<Recall>, AgentError>;
 
@@ -236,6 +239,10 @@ impl<N: Network> AnyLearner for Learner<N> {
 
     fn input_shapes(&self) -> Vec<Vec<usize>> {
         self.network.input_shapes()
+    }
+
+    fn perceive(&self, senses: &[f32]) -> Result<Vec<Percept>, AgentError> {
+        self.network.perceive_maps(senses)
     }
 
     fn recall(&self, senses: &[f32]) -> Result<Vec<Recall>, AgentError> {

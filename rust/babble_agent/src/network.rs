@@ -21,6 +21,15 @@ pub struct Activities {
     pub a: Vec<f32>,
 }
 
+/// Activity of an input map for senses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Percept {
+    /// What the map stands for.
+    pub name: &'static str,
+    /// Activities of the neurons, the last axis fastest.
+    pub activity: Vec<f32>,
+}
+
 /// Activity of an output map that senses call up.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recall {
@@ -86,6 +95,12 @@ pub trait Network: Clone + Send + Sync + fmt::Debug + 'static {
 
     /// Neurons along the axes of the input map of each association, the last axis fastest.
     fn input_shapes(&self) -> Vec<Vec<usize>>;
+
+    /// Activities of the input maps for a flat observation, one entry for each association.
+    ///
+    /// # Errors
+    /// [`AgentError`] for senses of another length.
+    fn perceive_maps(&self, senses: &[f32]) -> Result<Vec<Percept>, AgentError>;
 
     /// Activities of the output maps for a flat observation.
     ///

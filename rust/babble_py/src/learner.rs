@@ -194,6 +194,23 @@ impl Learner {
         convert::table(py, width, decided.iter().map(Vec::as_slice))
     }
 
+    /// Activities of the input maps by name, with the axes of `input_shapes`, for flat senses (m,).
+    fn perceive<'py>(
+        &self,
+        py: Python<'py>,
+        senses: PyReadonlyArray1<'py, f32>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let senses = senses.as_array().to_vec();
+        let learner = &self.inner.read()?.learner;
+        let percepts = learner.perceive(&senses).map_err(errors::agent)?;
+        let dict = PyDict::new(py);
+        for (percept, shape) in percepts.into_iter().zip(learner.input_shapes()) {
+            let activity = PyArray1::from_vec(py, percept.activity);
+            dict.set_item(percept.name, activity.reshape(shape)?)?;
+        }
+        Ok(dict)
+    }
+
     /// Activities (side, side) of the output maps by name, rows the second value, for flat senses (m,).
     fn recall<'py>(
         &self,

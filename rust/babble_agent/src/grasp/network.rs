@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::babbling::Experience;
 use super::policy::{ChooseGrasp, GraspPolicy, Sight};
 use crate::error::AgentError;
-use crate::network::{Activities, Network, Recall};
+use crate::network::{Activities, Network, Percept, Recall};
 use crate::policy::{Grasp, Policy, observation};
 use crate::rule::Rule;
 
@@ -152,6 +152,15 @@ impl Network for GraspNetwork {
         vec![vec![self.config.neurons; 2], vec![fovea; 2]]
     }
 
+    fn perceive_maps(&self, senses: &[f32]) -> Result<Vec<Percept>, AgentError> {
+        let (eye, fovea) = Self::split(senses)?;
+        let percept = |name, activity| Percept { name, activity };
+        Ok(vec![
+            percept("eye", self.perceive(eye)?),
+            percept("fovea", fovea.to_vec()),
+        ])
+    }
+
     fn recall_maps(&self, senses: &[f32]) -> Result<Vec<Recall>, AgentError> {
         let (eye, fovea) = Self::split(senses)?;
         let side = self.config.neurons;
@@ -205,15 +214,23 @@ impl GraspNetwork {
         &self.grasp
     }
 
+    /// Activity of the eye's map for where the object is (pan and tilt over their ranges), Eq. 3.
+    ///
+    /// # Errors
+    /// [`AgentError::Brain`] never, as any eye posture is encoded.
+    pub fn perceive(&self, eye: [f32; 2]) -> Result<Vec<f32>, AgentError> {
+        let mut g = vec![0.0; self.eye.len()];
+        self.eye.encode(&eye.map(f64::from), &mut g)?;
+        Ok(g)
+    }
+
     /// Activity of the arm's map for where the object is (pan and tilt over their ranges).
     ///
     /// # Errors
     /// [`AgentError::Brain`] never, as any eye posture is encoded.
     pub fn recall_arm(&self, eye: [f32; 2]) -> Result<Vec<f32>, AgentError> {
-        let mut g = vec![0.0; self.eye.len()];
-        self.eye.encode(&eye.map(f64::from), &mut g)?;
         let mut a = vec![0.0; self.arm.len()];
-        self.reach.recall(&g, &mut a)?;
+        self.reach.recall(&self.perceive(eye)?, &mut a)?;
         Ok(a)
     }
 

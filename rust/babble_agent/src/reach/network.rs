@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::babbling::Experience;
 use super::policy::{ChooseMovement, ReachPolicy};
 use crate::error::AgentError;
-use crate::network::{Activities, Network, Recall};
+use crate::network::{Activities, Network, Percept, Recall};
 use crate::policy::{Policy, observation};
 use crate::rule::Rule;
 
@@ -168,6 +168,17 @@ impl Network for ReachNetwork {
             Input::Obstacle(_) => vec![obstacle; 2],
             Input::Conjunctive(_) => vec![target, target, obstacle, obstacle],
         }]
+    }
+
+    fn perceive_maps(&self, senses: &[f32]) -> Result<Vec<Percept>, AgentError> {
+        let (eye, obstacle) = percepts(observation(senses)?);
+        Ok(vec![Percept {
+            name: match self.input {
+                Input::Obstacle(_) => "obstacle",
+                Input::Conjunctive(_) => "target_obstacle",
+            },
+            activity: self.perceive(&[eye], &[obstacle])?,
+        }])
     }
 
     fn recall_maps(&self, senses: &[f32]) -> Result<Vec<Recall>, AgentError> {

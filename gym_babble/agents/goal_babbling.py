@@ -28,8 +28,8 @@ HOME = 0.1
 POSTURES = 3
 """Postures that the arm moves to in a babble of grasping."""
 DEFAULTS = {
-    "reach": {"radius": 0.2, "rate": 0.5, "noise": 0.2},
-    "grasp": {"radius": 0.1, "rate": 0.3, "noise": 0.1},
+    "reach": {"radius": 0.2, "rate": 0.3, "noise": 0.2},
+    "grasp": {"radius": 0.2, "rate": 0.9, "noise": 0.1},
 }
 
 
@@ -49,8 +49,8 @@ class GoalBabbling(Learning):
 
     In grasping it babbles with the object in the hand, as `HebbBabbling` does, but chooses where
     the arm goes. Goals are directions in which the eye sees objects of sampled cases; a babble
-    moves in three equal steps from the last goal to a new one. q is the arm's posture, and x where
-    the eye finds the object in the hand. The weights are the paper's, at most 1: with a dash for
+    moves in three equal steps from the last goal to a new one. What is learnt is the arm's posture
+    as it is, q, and where the eye finds the object in the hand, x. The weights are the paper's, at most 1: with a dash for
     the step before, w = ½ (1 + cos(x* − x*', x − x')) |x − x'| / |q − q'|, but 0 if the hand lost
     or hid the object. Some babbles begin at home, the middle of the arm's ranges, with w = 1. The
     hand does not learn: it closes as the reflex does.
@@ -163,10 +163,13 @@ class GoalBabbling(Learning):
         found = _core.babble_to(
             self._learns_in().task, self._seed, self._babbled, actions.reshape(1, -1), 1
         )
-        seen = found["percepts"]["eye"].astype(np.float64)
-        weights = _weights(goals, seen, actions) * found["learnable"]
+        seen, arms = (
+            found[part][name].astype(np.float64)
+            for part, name in (("percepts", "eye"), ("actions", "arm"))
+        )
+        weights = _weights(goals, seen, arms) * found["learnable"]
         weights[0] = float(home and found["learnable"][0])
-        for x, q, weight in zip(seen, actions, weights, strict=True):
+        for x, q, weight in zip(seen, arms, weights, strict=True):
             estimate.learn(x, q, float(weight))
         return bool(weights.any())
 

@@ -13,7 +13,7 @@ __all__ = ["LocalMaps"]
 
 
 class LocalMaps:
-    """g(x) = Σ_i f_i(x) (M_i (x − p_i) + q_i), with f_i(x) = exp(−|x − p_i|² / 2r²) / Σ_j ….
+    """g(x) = Σ_i f_i(x) (M_i (x − p_i) / r + q_i), with f_i(x) = exp(−|x − p_i|² / 2r²) / Σ_j ….
 
     A map is added where no other one is within the radius r: at first it continues g. Then all maps
     descend the gradient of w |q − g(x)|², each by its share f_i.
@@ -63,10 +63,10 @@ class LocalMaps:
     def _near(
         self, x: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
-        """Shares f (n,), (x − p, 1) (n, inputs + 1), and the distance to the nearest place."""
+        """Shares f (n,), ((x − p) / r, 1) (n, inputs + 1), and the distance to the nearest place."""
         offsets = x - self.places
         squares = np.square(offsets).sum(axis=1)
         least = squares.min()
         shares = np.exp((least - squares) / (2 * self._radius**2))
-        sides = np.hstack([offsets, np.ones((len(offsets), 1))])
+        sides = np.hstack([offsets / self._radius, np.ones((len(offsets), 1))])
         return shares / shares.sum(), sides, float(np.sqrt(least))

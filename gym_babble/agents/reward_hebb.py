@@ -66,7 +66,7 @@ class RewardHebb(Learning):
         env: EnvLike = "BabbleReachPattern-v0",
         *,
         eta: float = 1.0,
-        noise: float = 0.1,
+        noise: float = 0.2,
         seed: int = 0,
     ) -> None:
         settings = {

@@ -198,8 +198,8 @@ def test_each_beats_chance_in_reaching():
     chance = success("random", REACH)
     for agent, babbles in (
         (NearestNeighbours(REACH), 300),
-        (GoalBabbling(REACH), 1_500),
-        (RewardHebb(REACH), 3_000),
+        (GoalBabbling(REACH), 1_000),
+        (RewardHebb(REACH), 1_000),
     ):
         agent.learn(babbles)
         assert success(agent, REACH) > chance + 0.2, agent
@@ -227,6 +227,6 @@ def test_shuffling_goes_on_where_it_stopped(env, tmp_path):
 
 
 def test_reflex_alone_reaches_by_chance():
-    assert success(ReflexOnly(seed=0), GRASP, 60) < success(Scripted(GRASP), GRASP, 60) - 0.5
+    assert success(ReflexOnly(seed=0), GRASP, 30) < success(Scripted(GRASP), GRASP, 30) - 0.5
     with pytest.raises(ConfigError, match="grasping"):
         ReflexOnly(REACH)

@@ -21,8 +21,9 @@ __all__ = ["GoalBabbling"]
 
 FIELD_RAD = np.radians(30.0)
 """Angle of the obstacle that counts as far as all of the eye's range."""
-DRIFT = 0.1
-"""Change of the exploration from trial to trial, over its size."""
+DRIFT = {"reach": 1.0, "grasp": 0.1}
+"""Change of the exploration from one movement to the next, over its size: in reaching each movement
+is of another case, and in grasping they follow each other."""
 HOME = 0.1
 """Probability that a babble begins at home."""
 POSTURES = 3
@@ -163,10 +164,8 @@ class GoalBabbling(Learning):
         found = _core.babble_to(
             self._learns_in().task, self._seed, self._babbled, actions.reshape(1, -1), 1
         )
-        seen, arms = (
-            found[part][name].astype(np.float64)
-            for part, name in (("percepts", "eye"), ("actions", "arm"))
-        )
+        seen = found["percepts"]["eye"].astype(np.float64)
+        arms = found["actions"]["arm"].astype(np.float64)
         weights = _weights(goals, seen, arms) * found["learnable"]
         weights[0] = float(home and found["learnable"][0])
         for x, q, weight in zip(seen, arms, weights, strict=True):
@@ -177,9 +176,9 @@ class GoalBabbling(Learning):
         self, estimate: LocalMaps, goal: NDArray[np.float64], random: np.random.Generator
     ) -> NDArray[np.float64]:
         """The action for a goal, with exploration, which drifts on."""
-        size = self._settings["noise"]
-        moved = self._exploration + DRIFT * size * random.standard_normal(self._exploration.shape)
-        self._exploration = (moved / np.sqrt(1 + DRIFT**2)).astype(np.float32)
+        size, drift = self._settings["noise"], DRIFT[self._interface.entry.name]
+        moved = self._exploration + drift * size * random.standard_normal(self._exploration.shape)
+        self._exploration = (moved / np.sqrt(1 + drift**2)).astype(np.float32)
         noise = self._exploration @ np.append(goal, 1.0)
         action: NDArray[np.float64] = np.clip(estimate(goal) + noise, 0.0, 1.0)
         return action

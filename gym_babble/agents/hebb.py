@@ -224,6 +224,7 @@ class HebbBabbling(Planner):
             json.dumps(self.brain),
             self.seed,
             self._core.babbling(),
+            self.shuffled,
             self._threads,
         )
         return agent

@@ -35,13 +35,12 @@ help: ## List the targets
 setup: $(STAMPS)/extension ## Install everything into .venv and build the extension (the others call it)
 
 demo: setup ## Compare the agents on both tasks and write figures and tables into report/
-	$(BIN)/gym-babble compare --report report --other-report grasp/index.html
-	$(BIN)/gym-babble compare --task grasp --report report/grasp --other-report ../index.html
+	$(BIN)/gym-babble study run demo --out report/study
+	$(BIN)/gym-babble study report report/study --out report
 
 PICTURES := docs/images
 pictures: setup ## Draw the pictures of README and docs again, without those of `make bench` (some minutes)
 	$(BIN)/python examples/film.py --out $(PICTURES)/babble.gif
-	$(BIN)/python examples/learning_curves.py --out $(PICTURES)/learning.png
 	for figure in fig2 fig4 fig5 fig7 fig8 sight; do \
 		$(BIN)/gym-babble reproduce $$figure --out $(PICTURES)/$$figure.png || exit 1; done
 

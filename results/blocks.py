@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from statistics import fmean
 from typing import TYPE_CHECKING, Any
 
 from gym_babble.paper.table2 import PAPER_TABLE_II
@@ -322,11 +323,33 @@ def solved(stores: Stores) -> str:
     return markdown(["id", "control", *(f"`{who.title()}`" for who in AGENTS)], rows)
 
 
+def tuning(stores: Stores) -> str:
+    """The searches for settings."""
+    rows = []
+    for found in stores["tuning"]:
+        trials, plan = found["trials"], found["plan"]
+        scores = [fmean(trial["success"]) for trial in trials]
+        rows.append(
+            [
+                f"{found['algorithm'].upper()}, `{found['env_id']}`",
+                f"{plan['steps']:,}",
+                str(len(plan["seeds"])),
+                str(plan["cases"]),
+                str(len(trials)),
+                f"{sum(trial['cpu_seconds'] for trial in trials):,.0f}",
+                share(scores[0]),
+                share(max(scores)),
+            ]
+        )
+    heads = ["algorithm", "movements", "seeds", "cases", "trials", "CPU s", "first", "best"]
+    return markdown(heads, rows)
+
+
 BLOCKS: dict[str, Callable[[Stores], str]] = {
     block.__name__: block
     for block in (
         *(table1_short, table1, fig4, sensitivity, vote, table2_short, table2, hands, holding),
-        *(sizes, engines, sides, interference, periods, ppo_reach, grasping, solved),
+        *(sizes, engines, sides, interference, periods, ppo_reach, grasping, solved, tuning),
     )
 }
 """The tables by name."""

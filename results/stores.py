@@ -66,6 +66,7 @@ STORES: dict[str, dict[str, str]] = {
         "closed-rapier": f"{HOLD} --reflex 90 90 --engine rapier --diameters 2.4",
     },
     "periods": {"rows": "python examples/grasp_learning_period.py"},
+    "convergence": {"counts": "python examples/convergence.py"},
     "sides": {"scripted": "python examples/grasp_sides.py"},
     "interference": {"rows": "python examples/grasp_interference.py --seeds 2"},
 }
@@ -76,6 +77,9 @@ STUDIES = {
     "ppo_grasp": ROOT / "gym_babble" / "study" / "results" / "ppo_grasp.json",
 }
 """Stored studies of PPO."""
+
+TUNING = ROOT / "docs" / "studies" / "tuning"
+"""Folder of what examples/tune.py wrote."""
 
 LEARNT_FROM = ("movements", "control_steps", "seconds", "processor_seconds")
 
@@ -130,6 +134,9 @@ class Stores(dict[str, Any]):
         """Reads a store."""
         if name == "derived":
             self[name] = derived(self)
+        elif name == "tuning":
+            files = sorted(TUNING.glob("*.json"))
+            self[name] = [json.loads(path.read_text(encoding="utf-8")) for path in files]
         elif name in STUDIES:
             self[name] = of_study(STUDIES[name])
         else:

@@ -74,7 +74,8 @@ LAYERS = (
 )
 
 HEAVY_MODULES = {
-    *("matplotlib", "pygame", "ray", "rich", "scipy", "stable_baselines3", "torch", "typer"),
+    *("jinja2", "matplotlib", "pygame", "ray", "rich", "scipy", "stable_baselines3", "torch"),
+    "typer",
 }
 
 

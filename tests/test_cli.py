@@ -2,7 +2,6 @@
 
 import csv
 import json
-import re
 import subprocess
 import sys
 
@@ -20,7 +19,6 @@ from gym_babble import (
     scenarios,
 )
 from gym_babble.envs.registry import TASKS
-from gym_babble.study import learning
 from gym_babble.study.tasks import GRASP, REACH
 from gym_babble.study.trainers.sb3 import train_tuned
 
@@ -246,68 +244,6 @@ def test_evaluate_a_model_of_stable_baselines3(run, run_json, tmp_path, env_id, 
     assert "observations" in told
 
 
-def test_compare_writes_a_report_of_one_file(run_json, tmp_path):
-    folder = tmp_path / "report"
-    document = run_json(
-        *("compare", "--agents", "hebb-paper,random", "--cases", 50, "--movements", MOVEMENTS),
-        *("--report", folder),
-    )
-    assert document == json.loads((folder / "results.json").read_text(encoding="utf-8"))
-    assert [row["agent"] for row in document["agents"]] == ["hebb-paper", "random"]
-    for row in document["agents"]:
-        check_rates(row["test_by_seed"][0], 50)
-    page = (folder / "index.html").read_text(encoding="utf-8")
-    assert 'src="data:image/png;base64,' in page
-    assert 'src="data:image/svg+xml;base64,' in page
-    assert "http://" not in page
-    assert "https://" not in page
-    assert str(tmp_path.parent.parent) not in page.replace(str(folder), "")
-    check_choice(page, document, 50)
-
-
-def check_choice(page, document, tests):
-    """A film is one of the successes of the first agent's first seed, and the page says so."""
-    n = document["agents"][0]["test_by_seed"][0]["success"]["count"]
-    among = f"{n} successes in {tests} tests" if n else f"{tests} tests without a success"
-    outcome, chosen = re.search(r"on case \d+: ([a-z ]+)\. Chosen from ([^:]+):", page).groups()
-    assert chosen == among
-    assert (outcome == "success") == (n > 0)
-
-
-def test_a_report_says_that_no_test_was_a_success(run_json, tmp_path):
-    config = tmp_path / "hard.toml"
-    config.write_text("[reach]\nsuccess_radius_m = 1e-4\n")
-    document = run_json(
-        *("compare", "--agents", "random", "--cases", 20, "--config", config),
-        *("--report", tmp_path / "report"),
-    )
-    page = (tmp_path / "report" / "index.html").read_text(encoding="utf-8")
-    check_choice(page, document, 20)
-
-
-def test_compare_writes_a_report_of_grasping(run_json, monkeypatch, tmp_path):
-    monkeypatch.setattr(learning, "VALIDATION_CASES", 4)
-    folder = tmp_path / "report"
-    document = run_json(
-        *("compare", "--task", "grasp", "--agents", "hebb-paper,ppo-stored"),
-        *("--cases", 6, "--babbles", 50, "--report", folder),
-        *("--other-report", "../index.html"),
-    )
-    assert document == json.loads((folder / "results.json").read_text(encoding="utf-8"))
-    assert [row["agent"] for row in document["agents"]] == ["hebb-paper", "ppo-stored"]
-    check_rates(document["agents"][0]["test_by_seed"][0], 6, GRASP)
-    page = (folder / "index.html").read_text(encoding="utf-8")
-    assert page.count('src="data:image/svg+xml;base64,') == 4  # Curves, Fig. 7 and 8, the sight.
-    assert page.count('src="data:image/png;base64,') == 2
-    assert '<a href="../index.html">' in page
-    assert "compare --task grasp" in page
-    assert "--babbles 50 --config paper --other-report ../index.html" in page
-    assert "examples/ppo_study.py --task grasp" in page  # Where the stored row is from.
-    check_choice(page, document, 6)
-    assert "http://" not in page
-    assert "https://" not in page
-
-
 def test_reproduce_table1(run_json, run, tmp_path):
     words = ("reproduce", "table1", "--seeds", 2, "--cases", 50, "--movements", MOVEMENTS)
     document = run_json(*words, "--out", tmp_path)
@@ -407,8 +343,12 @@ def test_doctor(run, run_json):
         (["babble", "--out", "agent", "--task", "fly"], "--task"),
         (["compare", "--agents", "hebb-paper,nobody"], "nobody"),
         (["compare", "--agents", ""], "hebb-paper"),
-        (["compare", "--task", "grasp", "--agents", "oracle"], "ppo-stored"),
-        (["compare", "--task", "grasp", "--babbles", "0"], "--babbles"),
+        (["compare", "--task", "grasp", "--agents", "hebb-conjunctive"], "can do none of grasp"),
+        (["compare", "--task", "grasp", "--budget", "0"], "--budget"),
+        (["study", "run", "nothing", "--out", "x"], "is not one of"),
+        (["study", "run", "nothing.toml", "--out", "x"], "nothing.toml"),
+        (["study", "resume", "nowhere"], "not the folder of a study"),
+        (["study", "report", "nowhere", "--out", "x"], "not the folder of a study"),
         (["compare", "--task", "fly"], "--task"),
         (["compare", "--seeds", "0"], "--seeds"),
         (["reproduce", "fig3"], "fig3"),

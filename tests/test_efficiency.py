@@ -1,5 +1,8 @@
 """Budgets that agents need, with seeds that did not reach a level within theirs."""
 
+import json
+from dataclasses import asdict
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -102,6 +105,7 @@ def test_intervals_hold_what_fits_the_checkpoints(needs, others):
     found = ratio(one, other)
     assert found.low <= found.least
     assert found.high is None or found.least <= found.most <= found.high
+    json.dumps([asdict(one), asdict(found)], allow_nan=False)
     if found.value is not None:
         assert found.least <= found.value
         assert found.most is None or found.value <= found.most

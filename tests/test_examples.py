@@ -13,10 +13,6 @@ RUNS = {
         "--movements 500 --babbles 100 --out {folder}/babble.gif",
         r".+/babble\.gif: \d+ kB",
     ),
-    "learning_curves.py": (
-        "--movements 500 --cases 20 --agents hebb-paper hebb-conjunctive --out {folder}/curves.png",
-        r"Hebb conjunctive, obstacle × eye: 0\.\d+ after [\d,]+ control steps, 0\.\d+ on the tests",
-    ),
     "hebb_reach.py": (
         "--movements 250 --cases 50",
         r"success 0\.\d+ \[0\.\d+, .+\] \(paper: 0\.67\)",
@@ -32,7 +28,7 @@ RUNS = {
     ),
     "ppo_reach.py": ("--steps 512 --cases 20", r"success 0\.\d+ \[0\.\d+, .+\]"),
     "tune.py": (
-        "td3 BabbleReachPattern-v0 --steps 300 --seeds 1 --cases 20 --trials 2 --out {folder}",
+        "sac BabbleReachGoal-v0 --steps 300 --seeds 1 --cases 20 --trials 2 --out {folder}",
         r"best of 2: [01]\.\d{3} with \{.+\}",
     ),
     "sensitivity.py": (
@@ -47,6 +43,7 @@ RUNS = {
         "--cases 3 --ids BabbleReachGoal-v0",
         r"\| `BabbleReachGoal-v0` \| pattern \| \d\.\d{3} \| \d\.\d{3} \|",
     ),
+    "convergence.py": ("--steps 640", r"posture: 0 in 640 control steps"),
     "grasp_sides.py": ("--cases 12", r"\| all \| 12 \| \d\.\d\d \| \d\.\d\d \|"),
     "grasp_interference.py": (
         "--seeds 1 --babbles 12 --cases 8",
@@ -97,6 +94,7 @@ def test_last_line(name, repository, monkeypatch, capsys, tmp_path):
         ("grasp_sizes.py", {"diameter", "held", "edges"}),
         ("grasp_sides.py", {"rows", "all"}),
         ("solvable.py", {"id", "control", "cases", "scripted", "oracle"}),
+        ("convergence.py", {"delta_posture", "posture"}),
         ("grasp_interference.py", {"babbled_with", "mean", "spread", "babbled", "in_hand"}),
     ],
 )

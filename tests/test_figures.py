@@ -10,11 +10,8 @@ from gym_babble.errors import ConfigError
 from gym_babble.paper import fig2, fig4, fig5
 from gym_babble.paper.fig4 import reached, switched, trajectories
 from gym_babble.paper.fig5 import weight_sets
-from gym_babble.study.compare import compare
-from gym_babble.study.contenders import Settings
 from gym_babble.study.rates import share
 from gym_babble.viz import style
-from gym_babble.viz.curves import learning_curves
 from gym_babble.viz.video import GAP, contact_sheet
 
 
@@ -116,23 +113,20 @@ def test_fig5_has_four_patterns_and_the_map(hebb):
     assert [picture.shape for picture in pictures[:5]] == [(21, 21)] * 5
 
 
+def test_fig5_shows_a_gaze_of_the_conjunctive_map_and_rules_without_a_bound():
+    agent = HebbBabbling(variant="conjunctive", seed=0).learn(4_000)
+    sets = weight_sets(agent, gaze=fig5.strongest_gaze(agent))
+    assert sets.patterns.shape == (11, 11, 21, 21)
+    assert sets.field_deg == 30.0
+    oja = weight_sets(HebbBabbling(rule="oja", seed=0).learn(1_000))
+    assert oja.w_max == pytest.approx(np.abs(oja.patterns).max())
+
+
 def test_fig5_needs_the_papers_map_and_some_learning():
     with pytest.raises(ConfigError, match="paper"):
         weight_sets(HebbBabbling(variant="conjunctive"))
     with pytest.raises(ConfigError, match="more movements"):
         weight_sets(HebbBabbling())
-
-
-def test_learning_curves_have_a_line_for_each_learner():
-    comparison = compare(["hebb-paper", "scripted"], Settings(seeds=2, cases=10, movements=500))
-    figure = learning_curves(comparison)
-    for axes in figure.axes:
-        assert len([line for line in axes.lines if line.get_marker() == "."]) == 2
-        assert len([line for line in axes.lines if line.get_ls() == ":"]) == 1  # The paper's.
-    stored = compare(["ppo-stored"], Settings(task="grasp", cases=1))
-    for axes in learning_curves(stored).axes:
-        drawn = [line.get_ls() for line in axes.lines]
-        assert drawn == ["-"] * len(stored.results[0].trained)
 
 
 def test_the_same_figure_is_the_same_svg():

@@ -14,8 +14,9 @@ from gym_babble import Agent, HebbBabbling, Oracle, Random, Scripted, evaluate, 
 from gym_babble.agents.base import predictor
 from gym_babble.agents.loading import named_agent
 from gym_babble.errors import ConfigError
-from gym_babble.study.compare import compare
-from gym_babble.study.contenders import Settings
+from gym_babble.study.results import test_tally as tally_of
+from gym_babble.study.run import execute, runs_of
+from gym_babble.study.short import comparison
 from gym_babble.viz.episode import play
 
 PATTERN = "BabbleReachPattern-v0"
@@ -78,11 +79,12 @@ def test_agents_of_ones_own_are_tested_by_name(own):
     stepwise = evaluate(f"{own}:Placed", cases=cases)
     assert stepwise == evaluate(f"{own}:Plain", "BabbleReach-v0", cases)
     assert evaluate("scripted", cases=cases) == evaluate(Scripted(), cases=cases)
-    (result,) = compare([f"{own}:Bulge"], Settings(cases=30)).results
-    assert result.rates_by_seed[0]["success"]["count"] == bulge.count("success")
-    assert result.contender.title == "Bulge"
-    (placed,) = compare([f"{own}:Placed"], Settings(cases=30)).results
-    assert placed.tests == (stepwise,)
+    for name, env_id, test in (("Bulge", PATTERN, bulge), ("Placed", "BabbleReach-v0", stepwise)):
+        (spec,) = runs_of(comparison("reach", [f"{own}:{name}"], cases=30, case_seed=0))
+        record, _ = execute(spec)
+        assert spec.agent.label == name
+        assert record["env"] == env_id
+        assert tally_of(record)["success"]["count"] == test.count("success")
 
 
 def test_an_agent_of_one_argument_is_filmed(own):

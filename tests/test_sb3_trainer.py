@@ -12,6 +12,7 @@ import torch
 from gym_babble import evaluate, scenarios
 from gym_babble.agents.loading import named_agent
 from gym_babble.errors import ConfigError, DivergedError, MissingExtraError
+from gym_babble.study.roster import GENERATORS, REFLEX, ROSTER, trainer_for
 from gym_babble.study.trainers.base import Cost, Order
 from gym_babble.study.trainers.sb3 import SB3Trainer, train_tuned
 
@@ -49,7 +50,8 @@ def cases_of(trainer, n=20):
 
 @pytest.mark.parametrize("agent", AGENTS)
 def test_same_seed_same_bits_whatever_happens_in_pauses(agent):
-    steps = 128 * AGENTS[agent][3]
+    rollout = 64 if agent.startswith("ppo") else 32
+    steps = 2 * rollout * AGENTS[agent][3]
 
     def trained(seed, *stops, test=False):
         trainer = made(agent, seed=seed, budget=steps)
@@ -107,9 +109,29 @@ def test_a_linear_schedule_ends_with_the_budget():
     assert rates == pytest.approx([0.5e-2, 0.0])
 
 
-@pytest.mark.parametrize("senses", [["obstacle"], ["eye", "obstacle"]])
-def test_sees_its_senses_and_no_others(senses):
-    trainer = made("ppo-pattern", settings={"senses": senses})
+@pytest.mark.parametrize(
+    ("name", "task"),
+    [
+        (name, task)
+        for name, row in ROSTER.items()
+        if row.trainer[:4] == "sb3:"
+        for task in row.tasks
+    ],
+)
+def test_the_rosters_agents_know_what_it_says(name, task):
+    place = ROSTER[name].tasks[task]
+    arguments = trainer_for(name, Order(task=task, seed=0, budget=place.budget)).arguments
+    assert arguments.task == task
+    assert (arguments.option("control") == "pattern") == (GENERATORS in place.knows)
+    assert bool(arguments.option("enclosure_reflex")) == (REFLEX in place.knows)
+
+
+@pytest.mark.parametrize(
+    ("name", "senses"),
+    [("ppo-obstacle", ["obstacle"]), ("ppo-eye-obstacle", ["eye", "obstacle"])],
+)
+def test_sees_its_senses_and_no_others(name, senses):
+    trainer = trainer_for(name, Order(task="reach", seed=0, budget=1))
     observation, _ = gym.make("BabbleReachPattern-v0").reset(seed=0)
     action = trainer.agent.predict(observation, deterministic=True)[0]
     for sense, value in observation.items():
@@ -118,6 +140,7 @@ def test_sees_its_senses_and_no_others(senses):
         assert same == (sense not in senses)
 
 
+@pytest.mark.slow
 def test_ppo_learns_whole_movements():
     model = train_tuned("ppo", "BabbleReachPattern-v0", seed=3, steps=6_000)
     assert model.num_timesteps == 6_144
@@ -135,6 +158,13 @@ def test_a_reflex_of_the_order_holds_in_learning_tests_and_zip():
     (interface,) = trainer.agent.env.get_attr("interface", 0)
     assert interface.options["enclosure_reflex"] is True
     assert trainer.arguments.option("enclosure_reflex") is True
+
+
+def test_learning_options_hold_while_learning_and_not_in_tests():
+    trainer = made("ppo-grasp", settings={"learning_options": {"diameters": [0.05]}})
+    (interface,) = trainer.agent.env.get_attr("interface", 0)
+    assert interface.options["diameters"] == [0.05]
+    assert "diameters" not in trainer.arguments.options
 
 
 @pytest.mark.parametrize("agent", ["ppo", "sac"])
@@ -174,6 +204,7 @@ def test_a_learning_rate_that_blows_up_is_an_error():
         ("ppo", {"settings": {"senses": []}}, "senses is empty"),
         ("ppo", {"options": {"control": "pattern"}}, "control = 'pattern'"),
         ("sac", {"options": {"control": "posture"}}, "control = 'posture'"),
+        ("ppo", {"settings": {"learning_options": 3}}, "settings.learning_options = 3"),
         ("ppo", {"env_id": None}, "env_id is missing"),
         ("ppo", {"env_id": "BabbleReachSparse-v0"}, "no tuned settings"),
         ("ppo", {"options": {"retina": 3}}, "retina"),

@@ -12,7 +12,10 @@ from gym_babble.cli import main
 FENCED = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 PAGES = (
     "README.md",
-    *(f"docs/{name}.md" for name in ("baselines", "environments", "export", "extending")),
+    *(
+        f"docs/{name}.md"
+        for name in ("baselines", "environments", "export", "extending", "studies")
+    ),
 )
 
 FRAMEWORKS = "docs/frameworks.md"

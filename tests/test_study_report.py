@@ -8,13 +8,19 @@ import re
 from html.parser import HTMLParser
 from typing import Any
 
+import numpy as np
 import pytest
 
 pytest.importorskip("jinja2", reason="the wheel's tests install no extra")
 pytest.importorskip("matplotlib", reason="the wheel's tests install no extra")
 pytest.importorskip("scipy", reason="the wheel's tests install no extra")
 
+from gym_babble.errors import ConfigError
+from gym_babble.report.charts import learning_charts
 from gym_babble.report.citation import bibtex
+from gym_babble.report.data import AXES, tasks_of
+from gym_babble.report.joined import read_joined
+from gym_babble.report.numbers import task_numbers
 from gym_babble.report.rendering import count, seconds
 from gym_babble.report.writing import REPORT_FILES, write_report
 from gym_babble.study.rates import share
@@ -203,6 +209,42 @@ def test_budgets_that_were_not_reached_are_bounds(report):
             assert float(row["after"]) > 0
 
 
+def test_each_learner_is_the_reference_of_ratios_in_control_steps(store, tmp_path):
+    (task,) = tasks_of(store)
+    for seed in ("a", "b"):
+        (tmp_path / seed).mkdir()
+        steps, successes = np.array([0, 10, 100]), np.array([[0, 0], [1, 0], [1, 1]])
+        np.savez(tmp_path / seed / "evaluations.npz", timesteps=steps, successes=successes)
+    joined = read_joined(f"reach:mine={tmp_path}", store.study(), steps_per_action=200)
+    assert joined.names == ("a", "b")
+    assert joined.runs == [([2_000.0, 20_000.0], [0.5, 1.0])] * 2
+    numbers = task_numbers(task, [joined])
+    assert {axis: {*found} for axis, found in numbers["ratios"].items()} == {
+        "trials": {"hebb-paper"},
+        "control_steps": {"hebb-paper", "mine"},
+        "cpu_seconds": {"hebb-paper"},
+    }
+    (mine,) = numbers["joined"]
+    assert [cell["by"] for cell in mine["budgets"]["control_steps"]] == [2e3] + [2e4] * 4
+    names = [chart.name for chart in learning_charts(numbers)]
+    assert names == [f"reach.curve.{axis}" for axis in AXES]
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ("reach:mine", "TASK:LABEL=PATH"),
+        ("reach:a b=logs", "TASK:LABEL=PATH"),
+        ("grip:mine=logs", "'grip' is not one of reach"),
+        ("reach:random=logs", "already"),
+        ("reach:mine=nowhere", "no file or folder nowhere"),
+    ],
+)
+def test_what_cannot_join_is_named(store, given, said):
+    with pytest.raises(ConfigError, match=said):
+        read_joined(given, store.study())
+
+
 def test_the_same_store_is_the_same_report(store, report, tmp_path):
     # An earlier report of a study with another task leaves nothing behind.
     (tmp_path / "results.json").write_text('{"files": ["old.svg", "../x.svg"]}', encoding="utf-8")
@@ -246,7 +288,7 @@ def test_a_report_of_grasping_shows_sizes_hands_and_sight(tmp_path):
     Page(text)
     for sentence in ("A grasp", "any touch", "Success by size", "objects placed in the hand"):
         assert sentence in text
-    assert "the paper" not in text.partition("Citation")[0].replace("the paper's", "")
+    assert '<tr class="paper">' not in text
 
 
 @pytest.mark.parametrize(

@@ -328,8 +328,8 @@ INTERRUPTED = """
 import signal, time
 import numpy as np
 from gym_babble import HebbBabbling, Oracle, evaluate, scenarios
-from gym_babble.study.compare import compare
-from gym_babble.study.contenders import Settings
+from gym_babble.study.run import execute, runs_of
+from gym_babble.study.short import comparison
 from gym_babble.envs import BabbleGraspVectorEnv, BabbleReachVectorEnv
 
 # A shell's background jobs are born deaf to it.
@@ -350,7 +350,7 @@ for name, call in {
     "HebbBabbling.learn": lambda: HebbBabbling().learn(10**6),
     "HebbBabbling.learn to grasp": lambda: HebbBabbling("BabbleGrasp-v0").learn(10**5),
     "evaluate": lambda: evaluate(Oracle(), cases=cases),
-    "compare": lambda: compare(["hebb-conjunctive"], Settings(movements=10**6)),
+    "a run": lambda: execute(runs_of(comparison("reach", ["hebb-conjunctive"], budget=10**9))[0]),
 }.items():
     print(name, flush=True)
     try:

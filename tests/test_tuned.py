@@ -1,5 +1,9 @@
 """The tuned settings: read as rl-zoo3 reads them, without running their text."""
 
+import json
+from pathlib import Path
+from statistics import mean
+
 import pytest
 from stable_baselines3 import HerReplayBuffer
 from stable_baselines3.common.utils import LinearSchedule
@@ -8,7 +12,8 @@ from torch import nn
 from gym_babble.envs.registry import ENVIRONMENTS
 from gym_babble.errors import ConfigError
 from gym_babble.study.trainers.base import Order
-from gym_babble.study.trainers.sb3 import SB3Trainer, setting_names
+from gym_babble.study.trainers.sb3 import SB3Trainer
+from gym_babble.study.trainers.sb3_models import setting_names
 from gym_babble.study.tuned import ALGORITHMS, converted, tuned_ids, tuned_settings
 
 ALL = [(algorithm, env_id) for algorithm in ALGORITHMS for env_id in tuned_ids(algorithm)]
@@ -44,6 +49,21 @@ def test_each_block_is_of_a_known_environment_and_has_known_settings(algorithm, 
     assert env_id in {row.id for row in ENVIRONMENTS}
     known = {*setting_names(algorithm), *OF_THE_TRAINING}
     assert tuned_settings(algorithm, env_id).keys() <= known
+
+
+TUNING = Path(__file__).parent.parent / "docs" / "studies" / "tuning"
+
+
+@pytest.mark.parametrize("path", sorted(TUNING.glob("*.json")), ids=lambda path: path.stem)
+def test_the_files_follow_from_the_search(path):
+    record = json.loads(path.read_text(encoding="utf-8"))
+    trials = record["trials"]
+    assert 1 <= len(trials) <= 20
+    assert sum(trial["cpu_seconds"] for trial in trials) <= 2 * 3_600
+    assert min(record["plan"]["seeds"]) >= 100  # Those of reported results begin at 0.
+    best = max(trials, key=lambda trial: mean(trial["success"]))["settings"]
+    found = tuned_settings(record["algorithm"], record["env_id"])
+    assert {**found, "n_timesteps": 0} == {**best, "n_timesteps": 0}
 
 
 def test_changing_what_was_read_changes_no_later_reading():

@@ -70,6 +70,14 @@ def test_the_p_value_is_exact_for_few_seeds():
     assert improvement([1, 1, 1], [1, 1]).p_value == 1
 
 
+def test_ties_change_the_way_but_not_the_p_value():
+    # 20,000 random rearrangements of 10 against 10, because of a tie that decides nothing.
+    x, y = np.arange(0, 20, 2.0), np.arange(5, 25, 2.0)
+    tied = np.where(y == 23, 21, y)
+    p = improvement(x, y).p_value
+    assert improvement(x, tied).p_value == pytest.approx(p, abs=4 * np.sqrt(p * (1 - p) / 20_000))
+
+
 def test_cases_are_averaged_and_one_seed_has_no_interval():
     outcomes = np.random.default_rng(0).random((4, 30)) < 0.6
     assert improvement(outcomes, [0.5, 0.6]) == improvement(outcomes.mean(axis=1), [0.5, 0.6])

@@ -6,7 +6,7 @@ import sys
 import pytest
 
 PYTORCH = ("stable_baselines3", "torch")
-PICTURES = ("matplotlib", "PIL", "moviepy", "pygame")
+PICTURES = ("matplotlib", "PIL", "moviepy", "pygame", "scipy", "jinja2", "yaml")
 FEW = ("--cases", "8")
 TABLES = (
     ("list",),
@@ -14,20 +14,29 @@ TABLES = (
     ("doctor",),
     ("babble", "--movements", "250", "--out", "agent.safetensors"),
     ("evaluate", "agent.safetensors", *FEW),
-    ("compare", "--movements", "250", *FEW),
-    ("compare", "--task", "grasp", "--agents", "hebb-paper,ppo-stored", "--babbles", "50", *FEW),
+    ("compare", "--budget", "50000", *FEW),
+    ("compare", "--task", "grasp", "--budget", "5000", *FEW),
     ("reproduce", "table1", "--seeds", "1", "--movements", "250", *FEW),
     ("export",),
 )
 FIGURES = (
-    ("compare", "--movements", "1000", "--report", "report", *FEW),
+    ("compare", "--budget", "300000", "--report", "report", *FEW),
     ("reproduce", "fig2"),
     ("reproduce", "fig5", "--movements", "1000"),
     ("record", "scripted", "--out", "film.mp4", "--size", "160", "--fps", "2"),
 )
 PROGRAM = """
 import sys
-sys.modules.update(dict.fromkeys({blocked}))
+from importlib.machinery import PathFinder
+
+class Hiding(PathFinder):
+    # As if these were not installed.
+    @classmethod
+    def find_spec(cls, name, path=None, target=None):
+        hidden = name.partition(".")[0] in {blocked}
+        return None if hidden else PathFinder.find_spec(name, path, target)
+
+sys.meta_path[sys.meta_path.index(PathFinder)] = Hiding
 import gymnasium, gym_babble
 from gym_babble.cli import main
 gymnasium.make("BabbleGrasp-v0", render_mode="rgb_array").reset()

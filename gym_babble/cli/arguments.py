@@ -7,12 +7,10 @@ from typing import Annotated, Any
 import typer
 
 from gym_babble.agents.hebb import VARIANTS
-from gym_babble.study.contenders import CONTENDERS
 from gym_babble.study.tasks import TASKS
 
 __all__ = [
     "AgentName",
-    "Agents",
     "AsJson",
     "Babbles",
     "Cases",
@@ -92,16 +90,6 @@ def given_options(**options: Any) -> dict[str, Any]:
     return {name: value for name, value in options.items() if value is not None}
 
 
-ALL_AGENTS = "; ".join(
-    f"{task}: " + ",".join(f"[{one.key}]" if one.opt_in else one.key for one in CONTENDERS[task])
-    for task in TASKS
-)
-Agents = Annotated[
-    str | None,
-    typer.Option(
-        help=f"Agents to compare, of {ALL_AGENTS}. Default: all except those in brackets."
-    ),
-]
 AgentName = Annotated[
     str,
     typer.Argument(

@@ -1,90 +1,71 @@
 """`gym-babble compare`."""
 
 import shlex
+import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Annotated
 
 import typer
 
-from gym_babble.cli.arguments import (
-    Agents,
-    AsJson,
-    Babbles,
-    Cases,
-    ConfigName,
-    FirstSeed,
-    Movements,
-    Seeds,
-    TaskName,
-)
-from gym_babble.cli.output import (
-    name_files,
-    print_json,
-    print_results,
-    say,
-)
+from gym_babble.cli.arguments import AsJson, Cases, ConfigName, FirstSeed, Seeds, TaskName
+from gym_babble.cli.output import name_files, say
+from gym_babble.cli.study import Jobs, print_study, run_with_bar
 from gym_babble.files import check_folder
 from gym_babble.report import REPORT_FILES, write_report
-from gym_babble.study.compare import compare as run_comparison
-from gym_babble.study.contenders import Settings
-from gym_babble.study.tasks import TASKS
+from gym_babble.study.roster import ROSTER
+from gym_babble.study.run import runs_of
+from gym_babble.study.short import comparison, usual_agents
 from gym_babble.viz.style import check_format
 
 __all__ = ["compare"]
+
+STUDY = "study"
+"""Folder of the study in that of its report."""
 
 
 def compare(
     *,
     report: Annotated[
-        Path | None, typer.Option(help="Folder for index.html and results.json.")
-    ] = None,
-    other_report: Annotated[
-        str | None, typer.Option(help="Path from the report to the other task's page, for a link.")
+        Path | None, typer.Option(help="Folder for the page and its numbers, and for the study.")
     ] = None,
     task: TaskName = "reach",
-    agents: Agents = None,
+    agents: Annotated[
+        str | None,
+        typer.Option(
+            help=f"Agents, with commas between: {', '.join(ROSTER)}, a file, or module:Class. "
+            "Default: those that take minutes."
+        ),
+    ] = None,
     seed: FirstSeed = 0,
     seeds: Seeds = 1,
     cases: Cases = 1_000,
-    movements: Movements = 20_000,
-    babbles: Babbles = 1_000,
+    budget: Annotated[
+        int | None,
+        typer.Option(min=1, help="Control steps to learn from. Default: each agent's own."),
+    ] = None,
     config: ConfigName = "paper",
+    jobs: Jobs = None,
     as_json: AsJson = False,
 ) -> None:
-    """Compare Hebb babbling with PPO, and with agents that need no learning."""
+    """Compare agents on one task: the short form of `study`."""
     if report is not None:
         check_folder(report, "--report", REPORT_FILES)
         check_format(report / "figure.svg")  # Fails now if the extra `figures` is missing.
-    settings = Settings(
-        task=task,
-        config=config,
-        seed=seed,
-        seeds=seeds,
-        cases=cases,
-        movements=movements,
-        babbles=babbles,
-        progress_bar=True,
+    names = None if agents is None else [name.strip() for name in agents.split(",")]
+    if names is None:
+        for name, extra in usual_agents(task).items():
+            if extra is not None:
+                say(f"left out: {name}, which needs pip install 'gym-babble[{extra}]'")
+    study = comparison(
+        task, names, seed=seed, seeds=seeds, cases=cases, budget=budget, config=config
     )
-    keys = None if agents is None else [key.strip() for key in agents.split(",")]
-    comparison = run_comparison(keys, settings, log=say)
-    if as_json:
-        print_json(comparison.to_json())
-    else:
-        print_results(comparison.table())
-    say(f"{comparison.seconds:.0f} s")
-    if report is not None:
-        say("writing the report")
-        command = _command(settings, report, agents, other_report)
-        name_files(write_report(comparison, report, command, other_report))
-
-
-def _command(settings: Settings, report: Path, agents: str | None, other_report: str | None) -> str:
-    """The command that creates the report again."""
-    words = ["gym-babble", "compare", "--task", settings.task, "--report", str(report)]
-    words += ["--agents", agents] if agents is not None else []
-    words += ["--seed", str(settings.seed), "--seeds", str(settings.seeds)]
-    words += ["--cases", str(settings.cases)]
-    trials = settings.movements if settings.task == "reach" else settings.babbles
-    words += [f"--{TASKS[settings.task].trials}", str(trials), "--config", str(settings.config)]
-    words += ["--other-report", other_report] if other_report is not None else []
-    return shlex.join(words)
+    runs_of(study)  # Names an unknown agent before anything is written.
+    with TemporaryDirectory() as aside:
+        store = run_with_bar(study, Path(aside) if report is None else report / STUDY, jobs)
+        print_study(store, as_json=as_json)
+        if report is not None:
+            say("writing the report")
+            name_files(write_report(store, report, shlex.join(["gym-babble", *sys.argv[1:]])))
+        if not all(run.finished for run in store.runs()):
+            raise typer.Exit(1)

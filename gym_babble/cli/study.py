@@ -9,18 +9,20 @@ from typing import Annotated, Any
 import typer
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from gym_babble.cli.output import messages, name_files, print_results, say
+from gym_babble.cli.arguments import AsJson
+from gym_babble.cli.output import messages, name_files, print_json, print_results, say
 from gym_babble.files import check_folder
+from gym_babble.report.joined import read_joined
 from gym_babble.report.writing import REPORT_FILES, write_report
 from gym_babble.study.engine import run_study
-from gym_babble.study.results import task_table
+from gym_babble.study.results import results_json, task_table
 from gym_babble.study.run import RunSpec, runs_of
 from gym_babble.study.spec import Study, read_study
 from gym_babble.study.specs import SPECS
-from gym_babble.study.store import Store, StoredRun
+from gym_babble.study.store import Store
 from gym_babble.study.tables import plain_table
 
-__all__ = ["StudyBar", "run_with_bar", "study"]
+__all__ = ["Jobs", "StudyBar", "print_study", "run_with_bar", "study"]
 
 study = typer.Typer(help="Run, resume and report a study.", no_args_is_help=True)
 
@@ -131,11 +133,11 @@ def resume(
 
 
 @study.command("show")
-def show(folder: Annotated[Path, typer.Argument(help="Folder of the study.")]) -> None:
-    """Print the tables of a study, as far as it has come."""
-    store = Store(folder)
-    found = store.study()
-    _print(found, store.runs())
+def show(
+    folder: Annotated[Path, typer.Argument(help="Folder of the study.")], *, as_json: AsJson = False
+) -> None:
+    """Print the results of a study, as far as it has come."""
+    print_study(Store(folder), as_json=as_json)
 
 
 @study.command("report")
@@ -143,12 +145,29 @@ def report(
     folder: Annotated[Path, typer.Argument(help="Folder of the study.")],
     *,
     out: Annotated[Path, typer.Option(help="Folder for the page, its numbers and charts.")],
+    join: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="TASK:LABEL=PATH",
+            help="Logs of stable-baselines3 whose learning curves join: evaluations.npz, "
+            "monitor.csv, a run's folder, or a folder of such folders, one for each seed.",
+        ),
+    ] = None,
+    steps_per_action: Annotated[
+        int, typer.Option(min=1, help="Control steps of one step of the joined runs.")
+    ] = 1,
 ) -> None:
     """Write a study as a page, with its numbers as JSON and CSV and its charts as SVG."""
     check_folder(out, "--out", REPORT_FILES)
-    command = shlex.join(["gym-babble", "study", "report", str(folder), "--out", str(out)])
+    store = Store(folder)
+    joined = [read_joined(one, store.study(), steps_per_action) for one in join or ()]
+    words = ["gym-babble", "study", "report", str(folder), "--out", str(out)]
+    for one in join or ():
+        words += ["--join", one]
+    if steps_per_action != 1:
+        words += ["--steps-per-action", str(steps_per_action)]
     say("writing the report")
-    name_files(write_report(Store(folder), out, command))
+    name_files(write_report(store, out, shlex.join(words), joined))
 
 
 @study.command("list")
@@ -164,12 +183,16 @@ def list_studies() -> None:
 
 def _run(study: Study, folder: Path, jobs: int | None, engine: str, address: str | None) -> None:
     store = run_with_bar(study, folder, jobs, engine, address)
-    runs = store.runs(runs_of(study))
-    _print(study, runs)
-    if not all(run.finished for run in runs):
+    print_study(store)
+    if not all(run.finished for run in store.runs()):
         raise typer.Exit(1)
 
 
-def _print(study: Study, runs: Sequence[StoredRun]) -> None:
-    for name in study.tasks:
-        print_results(task_table(study, runs, name))
+def print_study(store: Store, *, as_json: bool = False) -> None:
+    """Prints the results of a study: a table for each task, or one JSON document."""
+    found, runs = store.study(), store.runs()
+    if as_json:
+        print_json(results_json(found, runs))
+        return
+    for name in found.tasks:
+        print_results(task_table(found, runs, name))

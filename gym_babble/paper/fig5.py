@@ -35,6 +35,8 @@ class WeightSets:
     """Input neurons (rows, columns) whose weights alone produce one that curves right."""
     field_deg: float
     """Greatest azimuth and elevation of the obstacle in the input map [deg]."""
+    w_max: float
+    """Bound of the weights; the greatest one if the rule has no bound."""
 
     def mean(self, members: NDArray[np.bool_]) -> NDArray[np.float32]:
         """Mean weights (b2, b1) of a set."""
@@ -59,8 +61,8 @@ class WeightSets:
 def weight_sets(agent: HebbBabbling, *, gaze: tuple[int, int] | None = None) -> WeightSets:
     """Divides the input neurons by how a movement from their weights alone would curve.
 
-    Neurons whose weights are all below half of w_max belong to neither set: they have seen too few
-    obstacles.
+    Neurons whose weights are all below half of w_max, or of the greatest weight if the rule has no
+    bound, belong to neither set: they have seen too few obstacles.
 
     Args:
         agent: An agent of reaching.
@@ -79,11 +81,12 @@ def weight_sets(agent: HebbBabbling, *, gaze: tuple[int, int] | None = None) -> 
     activity = np.maximum(np.tanh(patterns), 0.0)  # Eq. 4 for one active input neuron.
     b1 = (activity * np.linspace(0.0, 1.0, side)).sum((2, 3))
     b1 = b1 / np.maximum(activity.sum((2, 3)), 1e-9)
-    taught = np.abs(patterns).max((2, 3)) > 0.5 * agent.brain["rule"]["w_max"]
+    w_max = float(agent.brain["rule"].get("w_max", np.abs(patterns).max()))
+    taught = np.abs(patterns).max((2, 3)) > 0.5 * w_max
     left, right = taught & (b1 > 0.5), taught & (b1 <= 0.5)
     if not (left.any() and right.any()):
         raise ConfigError("the agent has not learnt both curves yet: babble more movements")
-    return WeightSets(patterns, left, right, float(agent.brain["obstacle_field_deg"]))
+    return WeightSets(patterns, left, right, float(agent.brain["obstacle_field_deg"]), w_max)
 
 
 def strongest_gaze(agent: HebbBabbling) -> tuple[int, int]:
@@ -101,7 +104,7 @@ def _patterns(agent: HebbBabbling) -> NDArray[np.float32]:
 
 
 @styled
-def draw(sets: WeightSets, w_max: float = 0.2) -> Figure:
+def draw(sets: WeightSets) -> Figure:
     """Draws the weights to the output map (a neuron and the mean of each set), and the sets."""
     figure, axes = row_of_axes((11.0, 2.7), 5, width_ratios=(1, 1, 1, 1, 1.1))
     left, right = sets.typical(sets.left), sets.typical(sets.right)
@@ -113,7 +116,12 @@ def draw(sets: WeightSets, w_max: float = 0.2) -> Figure:
     )
     for ax, (pattern, title) in zip(axes, shown, strict=False):
         picture = ax.imshow(
-            pattern, origin="lower", extent=(0, 1, 0, 1), cmap="RdBu_r", vmin=-w_max, vmax=w_max
+            pattern,
+            origin="lower",
+            extent=(0, 1, 0, 1),
+            cmap="RdBu_r",
+            vmin=-sets.w_max,
+            vmax=sets.w_max,
         )
         ax.set(title=title, xlabel="b1", xticks=(0, 0.5, 1), yticks=(0, 0.5, 1))
     axes[0].set_ylabel("b2")

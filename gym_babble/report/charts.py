@@ -65,14 +65,14 @@ def final_charts(task: dict[str, Any]) -> list[Chart]:
 
 def learning_charts(task: dict[str, Any]) -> list[Chart]:
     """Learning curves over trials, control steps and CPU seconds; none if nobody learnt."""
-    learners = [agent for agent in task["agents"] if agent["curve"]]
+    learners = [agent for agent in (*task["agents"], *task["joined"]) if agent["curve"]]
     if not learners:
         return []
     paper = (task["paper"] or {}).get("success")
     charts = []
-    for axis in learners[0]["curve"]:
+    for axis in dict.fromkeys(axis for agent in learners for axis in agent["curve"]):
         words = axis_words(task, axis)
-        lines = [_band(agent, axis) for agent in learners]
+        lines = [_band(agent, axis) for agent in learners if axis in agent["curve"]]
         figure = bands(lines, x=words, y="success at checkpoints", log=True, dotted=paper)
         charts.append(Chart(f"{task['name']}.curve.{axis}", figure, f"Success against {words}."))
     return charts

@@ -104,6 +104,8 @@ class TaskRuns:
     """The agents with finished runs, in the study's order."""
     absent: tuple[StoredRun, ...]
     """Runs that are missing or failed."""
+    series: int
+    """Number of agents of the study."""
 
     @property
     def task(self) -> Task:
@@ -136,7 +138,8 @@ def _task(study: Study, name: str, runs: list[StoredRun]) -> TaskRuns:
         its.sort(key=lambda run: run.spec.seed)
         if its:
             agents.append(AgentRuns(agent, i, task.task, tuple(its)))
-    return TaskRuns(name, task, tuple(agents), tuple(run for run in mine if not run.finished))
+    absent = tuple(run for run in mine if not run.finished)
+    return TaskRuns(name, task, tuple(agents), absent, len(study.agents))
 
 
 def _happened(test: dict[str, Any], name: str) -> list[bool]:

@@ -12,24 +12,30 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from gym_babble.report.data import TaskRuns
+    from gym_babble.report.joined import JoinedRuns
     from gym_babble.study.store import Store
 
 __all__ = ["document_of"]
 
 
-def document_of(store: Store, tasks: Sequence[TaskRuns]) -> dict[str, Any]:
+def document_of(
+    store: Store, tasks: Sequence[TaskRuns], joined: Sequence[JoinedRuns] = ()
+) -> dict[str, Any]:
     """All numbers of a study.
 
     Args:
         store: The study's folder.
         tasks: Its tasks, as `tasks_of` reads them.
+        joined: Learning curves from elsewhere that join them.
 
     Raises:
         StudyError: A file of the store cannot be read.
     """
     study = store.study()
     records = [record for task in tasks for agent in task.agents for record in agent.records]
-    numbers = [task_numbers(task) for task in tasks]
+    numbers = [
+        task_numbers(task, [one for one in joined if one.task == task.name]) for task in tasks
+    ]
     return {
         "name": study.name,
         "title": study.title,

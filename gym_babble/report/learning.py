@@ -3,60 +3,64 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from gym_babble.report.data import AXES
 from gym_babble.study.efficiency import LEVELS, Curve, budget, ratio
 from gym_babble.study.statistics import interval
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
-    from gym_babble.report.data import AgentRuns
     from gym_babble.study.efficiency import Budget
 
-__all__ = ["budget_numbers", "curve_numbers", "ratio_numbers"]
+__all__ = ["Runs", "budget_numbers", "curve_numbers", "ratio_numbers"]
+
+Runs: TypeAlias = "Sequence[tuple[Sequence[float], Sequence[float]]]"
+"""Cost and success at the checkpoints of each run, along one axis."""
 
 
-def curve_numbers(agent: AgentRuns, axis: str) -> dict[str, Any]:
+def curve_numbers(runs: Runs, seeds: Sequence[int | str]) -> dict[str, Any]:
     """Success while learning: IQM and interval over the seeds, and each run's own curve.
 
     Runs have their checkpoints at slightly different costs. Between two checkpoints a run's success
     is taken as a straight line over the logarithm of the cost.
     """
-    runs = agent.curves(axis)
     points = [
         {"cost": cost, **asdict(interval([_at(cost, *run) for run in runs]))}
         for cost in _grid([costs for costs, _ in runs])
     ]
     each = [
         {"seed": seed, "cost": costs, "success": success}
-        for seed, (costs, success) in zip(agent.seeds, runs, strict=True)
+        for seed, (costs, success) in zip(seeds, runs, strict=True)
     ]
     return {"points": points, "runs": each}
 
 
-def budget_numbers(agent: AgentRuns, axis: str) -> list[dict[str, Any]]:
-    """What the agent has used when it first reached each level of success."""
-    return [{**asdict(one), "reached": one.reached} for one in _budgets(agent, axis)]
+def budget_numbers(runs: Runs) -> list[dict[str, Any]]:
+    """What the runs have used when they first reached each level of success."""
+    return [{**asdict(one), "reached": one.reached} for one in _budgets(runs)]
 
 
-def ratio_numbers(learners: Sequence[AgentRuns]) -> dict[str, dict[str, list[dict[str, Any]]]]:
-    """How many times the cost of the first learner each of the others needs, by axis."""
-    found: dict[str, dict[str, list[dict[str, Any]]]] = {}
-    for other in learners[1:]:
-        found[other.spec.label] = {}
-        for axis in AXES:
-            pairs = zip(_budgets(other, axis), _budgets(learners[0], axis), strict=True)
-            ratios = [ratio(one, first) for one, first in pairs]
-            found[other.spec.label][axis] = [{**asdict(one), "text": str(one)} for one in ratios]
-    return found
+def ratio_numbers(
+    learners: Mapping[str, Runs], references: Collection[str]
+) -> dict[str, dict[str, list[dict[str, Any]]]]:
+    """How many times the cost of each reference each other learner needs, by label."""
+    budgets = {label: _budgets(runs) for label, runs in learners.items()}
+    return {
+        one: {other: _ratios(budgets[other], budgets[one]) for other in budgets if other != one}
+        for one in references
+    }
 
 
-def _budgets(agent: AgentRuns, axis: str) -> list[Budget]:
-    curves = [Curve(np.array(costs), np.array(rates)) for costs, rates in agent.curves(axis)]
+def _ratios(budgets: Sequence[Budget], reference: Sequence[Budget]) -> list[dict[str, Any]]:
+    ratios = [ratio(*pair) for pair in zip(budgets, reference, strict=True)]
+    return [{**asdict(one), "text": str(one)} for one in ratios]
+
+
+def _budgets(runs: Runs) -> list[Budget]:
+    curves = [Curve(np.array(costs), np.array(rates)) for costs, rates in runs]
     return [budget(curves, level) for level in LEVELS]
 
 

@@ -6,8 +6,10 @@ from dataclasses import asdict
 from statistics import fmean
 from typing import TYPE_CHECKING, Any
 
+from gym_babble.envs.registry import task_entry
 from gym_babble.report.compared import improvement_numbers, mcnemar_numbers, profile_numbers
 from gym_babble.report.data import AXES
+from gym_babble.report.joined import AXIS, joined_numbers
 from gym_babble.report.learning import budget_numbers, curve_numbers, ratio_numbers
 from gym_babble.study.efficiency import LEVELS
 from gym_babble.study.rates import paper_tally
@@ -16,15 +18,25 @@ from gym_babble.study.statistics import few_seeds, summary
 from gym_babble.study.tasks import task_named
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from gym_babble.report.data import AgentRuns, TaskRuns
+    from gym_babble.report.joined import JoinedRuns
+    from gym_babble.report.learning import Runs
     from gym_babble.study.store import StoredRun
 
 __all__ = ["absent_numbers", "task_numbers"]
 
 
-def task_numbers(task: TaskRuns) -> dict[str, Any]:
-    """All numbers of a task."""
+def task_numbers(task: TaskRuns, joined: Sequence[JoinedRuns] = ()) -> dict[str, Any]:
+    """All numbers of a task.
+
+    Args:
+        task: The task.
+        joined: Learning curves from elsewhere that join it.
+    """
     config = task.spec.config
+    protocol = task_entry(task.spec.task).protocols[task.spec.protocol]
     return {
         "name": task.name,
         "task": task.spec.task,
@@ -33,12 +45,13 @@ def task_numbers(task: TaskRuns) -> dict[str, Any]:
         "protocol": task.spec.protocol,
         "config": config if isinstance(config, str) else "a config of its own",
         "cases": len(task.agents[0].happened("success")[0]) if task.agents else None,
-        "case_seed": task.spec.case_seed,
+        "case_seed": task.spec.case_seed if protocol.random else None,
         "checkpoint_cases": task.spec.checkpoint_cases,
         "levels": list(LEVELS),
         "paper": _paper(task),
         "agents": [_agent(task, agent) for agent in task.agents],
-        "ratios": ratio_numbers(task.learners),
+        "joined": joined_numbers(joined, task.series),
+        "ratios": {axis: _ratios(task, joined, axis) for axis in AXES},
         "profiles": profile_numbers(task.agents),
         "improvement": improvement_numbers(task.agents),
         "mcnemar": mcnemar_numbers(task.agents),
@@ -58,10 +71,21 @@ def absent_numbers(run: StoredRun) -> dict[str, Any]:
     }
 
 
+def _ratios(
+    task: TaskRuns, joined: Sequence[JoinedRuns], axis: str
+) -> dict[str, dict[str, list[dict[str, Any]]]]:
+    """Ratios of costs: to each learner in control steps, to the first alone on other axes."""
+    learners: dict[str, Runs] = {one.spec.label: one.curves(axis) for one in task.learners}
+    if axis == AXIS:
+        learners |= {one.label: one.runs for one in joined}
+    return ratio_numbers(learners, list(learners) if axis == AXIS else list(learners)[:1])
+
+
 def _agent(task: TaskRuns, agent: AgentRuns) -> dict[str, Any]:
     title, detail = agent.title
     place, seeded = agent.place, agent.entry is None or agent.entry.seeded
     tallies = [test_tally(record) for record in agent.records]
+    axes = AXES if agent.learns else ()
     return {
         "label": agent.spec.label,
         "agent": agent.spec.agent,
@@ -82,8 +106,8 @@ def _agent(task: TaskRuns, agent: AgentRuns) -> dict[str, Any]:
         "sizes": _sizes(tallies),
         "cost": _cost(agent),
         "runs": [_run(run, tally) for run, tally in zip(agent.runs, tallies, strict=True)],
-        "curve": {axis: curve_numbers(agent, axis) for axis in AXES} if agent.learns else {},
-        "budgets": {axis: budget_numbers(agent, axis) for axis in AXES} if agent.learns else {},
+        "curve": {axis: curve_numbers(agent.curves(axis), agent.seeds) for axis in axes},
+        "budgets": {axis: budget_numbers(agent.curves(axis)) for axis in axes},
     }
 
 

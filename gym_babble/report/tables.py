@@ -18,11 +18,12 @@ TABLES = ("rates.csv", "runs.csv", "curves.csv", "budgets.csv")
 def csv_tables(document: Mapping[str, Any]) -> dict[str, str]:
     """The files by name."""
     tasks = document["tasks"]
+    learners = [(task, one) for task in tasks for one in (*task["agents"], *task["joined"])]
     rows = (
         [_rates(task, agent) for task in tasks for agent in task["agents"]],
         run_rows(tasks),
-        [row for task in tasks for agent in task["agents"] for row in _curve(task, agent)],
-        [row for task in tasks for agent in task["agents"] for row in _budgets(task, agent)],
+        [row for task, agent in learners for row in _curve(task, agent)],
+        [row for task, agent in learners for row in _budgets(task, agent)],
     )
     return {name: _csv(table) for name, table in zip(TABLES, rows, strict=True)}
 

@@ -45,13 +45,20 @@ def title_of_task(task: dict[str, Any]) -> str:
 
 def about(task: dict[str, Any]) -> str:
     """What a task is, and on which cases it is tested."""
-    protocol = f"protocol {task['protocol']}, config {task['config']}"
+    protocol = f"protocol {_protocol(task)}, config {task['config']}"
     if task["cases"] is None:
         return f"{ABOUT[task['task']]} No run is finished yet ({protocol})."
     return (
         f"{ABOUT[task['task']]} All agents and seeds are tested on the same {task['cases']:,} "
-        f"cases ({protocol}, case seed {task['case_seed']:,}), which no agent has learnt from."
+        f"cases ({protocol}), which no agent has learnt from."
     )
+
+
+def _protocol(task: dict[str, Any]) -> str:
+    """The protocol of a task's cases, with their seed if they are random."""
+    if task["case_seed"] is None:
+        return f"{task['protocol']}, one fixed list"
+    return f"{task['protocol']} with case seed {task['case_seed']:,}"
 
 
 def axis_words(task: dict[str, Any], axis: str) -> str:
@@ -137,11 +144,12 @@ def notes(task: dict[str, Any]) -> dict[str, str]:
         f"{words.accepted}. The time of tests does not count.",
         "learning": f"At each checkpoint an agent plays the first {task['checkpoint_cases']:,} of "
         "the test cases, while the clocks stand still. Thick: interquartile mean over the seeds. "
-        "Bands: its 95 % interval. Thin: single runs.",
+        f"Bands: its 95 % interval. Thin: single runs.{_joined(task)}",
         "budgets": "The median seed. A run is tested at checkpoints only, so it has needed more "
         "than the checkpoint before, and at most the number shown. Small: 95 % interval from a "
         "bootstrap over seeds, with the distance of the checkpoints in it. “>” means that the "
-        "median seed did not get there within its budget: there is no number, only a bound.",
+        "median seed did not get there within its budget: there is no number, only a bound. A "
+        "ratio above 1 means that the agent in the row needs more.",
         "improvement": "How probably a seed of the agent in the row succeeds more often than a "
         "seed of the agent in the column, ties counted half; below, the 95 % interval from a "
         "bootstrap over the seeds. .500 means that neither is better. Grey: the interval holds "
@@ -152,6 +160,14 @@ def notes(task: dict[str, Any]) -> dict[str, str]:
     }
 
 
+def _joined(task: dict[str, Any]) -> str:
+    """What a reader must know of curves from elsewhere."""
+    if not task["joined"]:
+        return ""
+    titles = ", ".join(one["title"] for one in task["joined"])
+    return f" {titles}: from logs of stable-baselines3; their episodes are not this study's cases."
+
+
 def methods(document: dict[str, Any]) -> dict[str, str]:
     """The methods as sentences that a paper can use, with the numbers of this study."""
     tasks = document["tasks"]
@@ -159,8 +175,8 @@ def methods(document: dict[str, Any]) -> dict[str, str]:
     runs = sum(len(agent["runs"]) for task in tasks for agent in task["agents"])
     hours = document["cpu_seconds"] / 3600
     return {
-        "tests": f"{tests} All agents of a task were tested on the same cases, from the case seed "
-        "that the study states; deterministic actions, one episode for each case.",
+        "tests": f"{tests} All agents of a task were tested on the same cases, with deterministic "
+        "actions and one episode for each case.",
         "costs": "Every control step that an agent took while it learnt was counted, those of "
         "failed movements and dropped objects too; a whole movement counts with all its steps. "
         "CPU time is that of one process with one thread. At checkpoints at 1, 2, 5, 10 … thousand "
@@ -184,7 +200,7 @@ def methods(document: dict[str, Any]) -> dict[str, str]:
 def _tests(task: dict[str, Any]) -> str:
     return (
         f"{HEADINGS[task['task']]} was tested on {task['cases']:,} cases of protocol "
-        f"{task['protocol']} with case seed {task['case_seed']:,} (config {task['config']})."
+        f"{_protocol(task)} (config {task['config']})."
     )
 
 

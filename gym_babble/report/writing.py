@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from gym_babble.report.charts import Chart
     from gym_babble.report.data import TaskRuns
+    from gym_babble.report.joined import JoinedRuns
     from gym_babble.study.store import Store
 
 __all__ = ["REPORT_FILES", "write_report"]
@@ -32,15 +33,18 @@ REPORT_FILES = ("index.html", "results.json", *TABLES)
 """Names of the files of each report; its charts come beside them, as SVG files."""
 
 
-def write_report(store: Store, folder: Path, command: str) -> list[Path]:
+def write_report(
+    store: Store, folder: Path, command: str, joined: Sequence[JoinedRuns] = ()
+) -> list[Path]:
     """Writes index.html, results.json, the tables as CSV and the charts as SVG: all or none.
 
-    Everything comes from the store: the same store gives the same bytes.
+    Everything comes from the store and the logs that join it: the same ones give the same bytes.
 
     Args:
         store: The folder of the study; unfinished ones have a report too.
         folder: Folder of the report; created if missing.
         command: The command that creates this report.
+        joined: Learning curves of someone's own runs, as `read_joined` reads them.
 
     Returns:
         The files.
@@ -53,7 +57,7 @@ def write_report(store: Store, folder: Path, command: str) -> list[Path]:
     """
     _check_extras(folder)
     tasks = tasks_of(store)
-    document = document_of(store, tasks)
+    document = document_of(store, tasks, joined)
     book = _Charts()
     shown = [
         _task(task, numbers, book) for task, numbers in zip(tasks, document["tasks"], strict=True)
@@ -95,7 +99,7 @@ class _Charts:
 def _task(task: TaskRuns, numbers: dict[str, Any], book: _Charts) -> dict[str, Any]:
     """A task for `task.html`: its numbers, sentences, charts and sections."""
     words = task_named(numbers["task"])
-    learners = [agent for agent in numbers["agents"] if agent["curve"]]
+    learners = [agent for agent in numbers["agents"] if agent["curve"]] + numbers["joined"]
     charts = {}
     if numbers["agents"]:
         charts = {"final": final_charts(numbers), "learning": learning_charts(numbers)}
@@ -110,6 +114,7 @@ def _task(task: TaskRuns, numbers: dict[str, Any], book: _Charts) -> dict[str, A
         "axes": [
             {"name": axis, "words": texts.axis_words(numbers, axis)}
             for axis in sorted(AXES, key=lambda axis: axis != "control_steps")
+            if any(axis in agent["budgets"] for agent in learners)
         ],
         "learners": learners,
         "sizes": list(numbers["agents"][0]["sizes"]) if numbers["agents"] else [],

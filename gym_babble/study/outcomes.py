@@ -66,9 +66,10 @@ class Evaluation:
         return self.count(name) / len(self)
 
     def interval(self, name: str) -> tuple[float, float]:
-        """95 % Wilson interval of the rate: what these cases say about all such cases.
+        """95 % Wilson interval of the rate, an interval over episodes of this one agent.
 
-        It says nothing about other seeds of learning.
+        It is about other cases. It says nothing about other seeds of learning:
+        `gym_babble.study.statistics` has intervals over seeds.
 
         Raises:
             ConfigError: There is no such outcome or fact.
@@ -118,7 +119,7 @@ def joined(parts: Sequence[Evaluation]) -> Evaluation:
 
 
 def wilson(count: int, n: int, z: float = 1.959964) -> tuple[float, float]:
-    """Wilson score interval of a rate, 95 % by default (Wilson 1927)."""
+    """Wilson score interval of a rate over episodes, 95 % by default (Wilson 1927)."""
     if n == 0:
         return 0.0, 1.0
     p = count / n

@@ -6,7 +6,7 @@ from collections import Counter
 from statistics import fmean
 from typing import TYPE_CHECKING, Any
 
-from gym_babble.study.rates import counted, paper_tally
+from gym_babble.study.rates import counted, over_seeds, paper_tally, sizes_of
 from gym_babble.study.roster import ROSTER
 from gym_babble.study.tables import (
     INTERVALS,
@@ -26,8 +26,9 @@ if TYPE_CHECKING:
 
     from gym_babble.study.spec import Study, StudyAgent
     from gym_babble.study.store import StoredRun
+    from gym_babble.study.tasks import Task
 
-__all__ = ["by_agent", "task_table", "test_tally", "title_of"]
+__all__ = ["by_agent", "results_json", "task_table", "test_tally", "title_of"]
 
 
 def test_tally(record: Mapping[str, Any]) -> dict[str, Any]:
@@ -49,6 +50,46 @@ def _counts(test: Mapping[str, Any], which: Sequence[int]) -> dict[str, int]:
     return {"cases": len(which), **outcomes, **facts}
 
 
+def results_json(study: Study, runs: Sequence[StoredRun]) -> dict[str, Any]:
+    """The rates and costs of all runs as JSON types, for each task and agent.
+
+    Rates over seeds are means and ranges; a run that failed or is missing has an `error`.
+    """
+    tasks = {
+        name: {
+            "protocol": task.protocol,
+            "agents": {
+                label: _agent_json(task_named(task.task), of_agent)
+                for label, of_agent in by_agent(runs, name).items()
+            },
+        }
+        for name, task in study.tasks.items()
+    }
+    return {"study": study.to_json(), "tasks": tasks}
+
+
+def _agent_json(task: Task, runs: Sequence[StoredRun]) -> dict[str, Any]:
+    records = [run.record for run in runs if run.finished and run.record is not None]
+    tallies = [test_tally(record) for record in records]
+    sizes = {size: over_seeds(parts, task.rates) for size, parts in sizes_of(tallies).items()}
+    costs = [record["cost"] for record in records]
+    known = [name for name in (costs[0] if costs else {}) if costs[0][name] is not None]
+    return {
+        "title": title_of(runs[0].spec.agent)[0],
+        "env": records[0]["env"] if records else None,
+        "budget": runs[0].spec.budget,
+        "test": {**over_seeds(tallies, task.rates), "by_size": sizes} if tallies else None,
+        "cost": {name: fmean(cost[name] for cost in costs) for name in known},
+        "by_seed": [_run_json(run) for run in runs],
+    }
+
+
+def _run_json(run: StoredRun) -> dict[str, Any]:
+    if not run.finished or run.record is None:
+        return {"seed": run.spec.seed, "error": run.error or "has not run"}
+    return {"seed": run.spec.seed, "cost": run.record["cost"], **test_tally(run.record)}
+
+
 def by_agent(runs: Sequence[StoredRun], task_name: str) -> dict[str, list[StoredRun]]:
     """The runs of a task for each agent's label."""
     found: dict[str, list[StoredRun]] = {}
@@ -68,6 +109,8 @@ def title_of(agent: StudyAgent) -> tuple[str, str]:
 
 def task_table(study: Study, runs: Sequence[StoredRun], task_name: str) -> Table:
     """The rates of all agents of a task, for a terminal of 80 characters."""
+    from rich.text import Text
+
     spec = study.tasks[task_name]
     task = task_named(spec.task)
     table = plain_table(
@@ -88,7 +131,7 @@ def task_table(study: Study, runs: Sequence[StoredRun], task_name: str) -> Table
         ]
         if finished:
             _add_rows(table, finished)
-    table.caption = "\n".join(notes)
+    table.caption = Text("\n".join(notes))
     return table
 
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 import difflib
 import importlib
 import re
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -64,6 +65,12 @@ class RosterAgent:
     """Whether it depends on the seed; if not, one run is enough."""
     in_compare: bool = True
     """Whether `gym-babble compare` includes it unless agents are named."""
+
+    @property
+    def extra(self) -> str | None:
+        """The extra that its trainer needs and that is not installed; None if none is missing."""
+        needs_it = self.trainer.startswith("sb3:")
+        return "sb3" if needs_it and find_spec("stable_baselines3") is None else None
 
     def tuned(self, env_id: str) -> str:
         """The text of its tuned settings in an environment; empty if it has none in a file."""
@@ -246,6 +253,8 @@ def roster_agent(name: str) -> RosterAgent | None:
 def trainer_for(name: str, order: Order) -> Trainer:
     """The trainer of an agent by name, from a file, or of "module:Class".
 
+    The order has what the roster says of the agent, as `runs_of` completes it.
+
     Raises:
         ConfigError: There is no such agent or setting, or it cannot do what is ordered.
         FileNotFoundError: There is no such file.
@@ -258,10 +267,4 @@ def trainer_for(name: str, order: Order) -> Trainer:
         raise ConfigError(f"agent = {name!r} has no form for {order.task}ing")
     module, _, function = entry.trainer.partition(":")
     make = getattr(importlib.import_module(f"gym_babble.study.trainers.{module}"), function)
-    complete = replace(
-        order,
-        env_id=order.env_id or entry.tasks[order.task].env_id,
-        options={**entry.options, **order.options},
-        settings={**entry.settings, **order.settings},
-    )
-    return make(complete)  # type: ignore[no-any-return]
+    return make(order)  # type: ignore[no-any-return]

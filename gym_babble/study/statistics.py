@@ -210,8 +210,8 @@ def few_seeds(seeds: int) -> str | None:
     if seeds == 1:
         return "Only 1 seed: it has no interval, and another seed may give another result."
     return (
-        f"Only {seeds} seeds: an interval over so few holds the true value less often than its 95 %"
-        " promise (3 seeds: about 75 % in simulations). Use 5 seeds or more."
+        f"Only {seeds} seeds: a 95 % interval over so few holds the true value less often than in"
+        " 95 % of studies (3 seeds: in about 75 % of simulated ones). Use 5 seeds or more."
     )
 
 

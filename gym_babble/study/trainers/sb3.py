@@ -7,9 +7,9 @@
 
 from __future__ import annotations
 
-import inspect
 import json
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
@@ -17,39 +17,30 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gym_babble.agents.acting import MARK, marked
-from gym_babble.checks import check_choice, check_seed, check_whole
+from gym_babble.checks import check_seed, check_whole, shown
 from gym_babble.config import Config
 from gym_babble.envs.registry import environment
 from gym_babble.errors import ConfigError, DivergedError, MissingExtraError
-from gym_babble.sb3 import BabbleVecEnv, ChosenSenses, ProgressBar
+from gym_babble.sb3 import BabbleVecEnv, ProgressBar
 from gym_babble.study.trainers.base import Cost, Order, arguments_of, check_settings
-from gym_babble.study.tuned import converted, tuned_settings
+from gym_babble.study.trainers.sb3_models import check_control, made_model, setting_names
+from gym_babble.study.tuned import tuned_settings
 
 try:
     import torch
-    from stable_baselines3 import PPO, SAC, TD3, HerReplayBuffer
     from stable_baselines3.common.callbacks import BaseCallback, CallbackList
-    from stable_baselines3.common.noise import NormalActionNoise
 except ImportError as error:
     raise MissingExtraError("stable-baselines3", "sb3") from error
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
     from gym_babble.agents.acting import EnvArguments
     from gym_babble.config import ConfigLike
 
 __all__ = ["SB3Trainer", "ppo", "sac", "td3", "train_tuned"]
 
-CLASSES = {"ppo": PPO, "sac": SAC, "td3": TD3}
-
-OURS = ("n_envs", "senses", "noise_type", "noise_std")
-"""Settings that are not arguments of stable-baselines3's classes."""
-
 MOST_STEPS = 10**12
-
-DECIDED = ("env", "seed", "device", "verbose", "tensorboard_log", "_init_setup_model")
-"""Arguments of stable-baselines3's classes that the trainer decides."""
 
 
 class SB3Trainer:
@@ -62,22 +53,16 @@ class SB3Trainer:
         order: What to train. Its `settings` replace the tuned ones. They are the arguments of
             stable-baselines3's class, in rl-zoo3's form or as Python has them, and `n_envs`,
             environments stepped together; `senses`, those that the networks get; `noise_type`
-            ("normal") and `noise_std`, the noise on TD3's actions.
+            ("normal") and `noise_std`, the noise on TD3's actions; `learning_options`, options of
+            the environment that hold while learning, and not in tests.
         algorithm: "ppo", "sac" or "td3".
-        learning_options: Options of the environment that hold while learning, and not in tests.
 
     Raises:
         ConfigError: No tuned settings for the environment, an unknown setting or one that does not
             fit, or a control that the settings are not for.
     """
 
-    def __init__(
-        self,
-        order: Order,
-        algorithm: str,
-        *,
-        learning_options: Mapping[str, Any] | None = None,
-    ) -> None:
+    def __init__(self, order: Order, algorithm: str) -> None:
         torch.set_num_threads(1)
         env_id = order.env_id
         if env_id is None:
@@ -86,13 +71,13 @@ class SB3Trainer:
         del settings["n_timesteps"]  # The order has the budget.
         settings |= check_settings(order, setting_names(algorithm))
         tuned_options = settings.pop("env_kwargs", {})
-        _check_control(env_id, tuned_options, order.options)
+        check_control(env_id, tuned_options, order.options)
         options = tuned_options | order.options
         self.arguments: EnvArguments = arguments_of(replace(order, options=options), env_id)
         num_envs = check_whole("n_envs", settings.pop("n_envs"), 1, 65_536, "environments")
-        options |= learning_options or {}
+        options |= _mapping("learning_options", settings.pop("learning_options", {}))
         env = BabbleVecEnv(env_id, num_envs, config=order.config, threads=1, **options)
-        self.agent: Any = _model(algorithm, env, settings, order.seed)
+        self.agent: Any = made_model(algorithm, env, settings, order.seed)
         self._per_step = control_steps_per_step(self.arguments)
         self._budget = order.budget
         self._episodes = 0
@@ -131,8 +116,8 @@ class SB3Trainer:
             pass
         except ValueError as error:
             self.check_weights(error)
-            if "Expected parameter" in str(error):  # PyTorch's distributions: a scale of 0.
-                raise self._diverged(str(error).splitlines()[0]) from error
+            if "Expected parameter" in str(error):  # From PyTorch's distributions.
+                raise self._diverged("its actions have no mean or no deviation") from error
             raise
         self.check_weights()
         pause()
@@ -206,57 +191,10 @@ def td3(order: Order) -> SB3Trainer:
     return SB3Trainer(order, "td3")
 
 
-def _check_control(env_id: str, tuned: Mapping[str, Any], given: Mapping[str, Any]) -> None:
-    """An action is a whole movement in `pattern` control alone: the others' settings do not fit."""
-    usual = {**environment(env_id).options, **tuned}["control"]
-    control = given.get("control", usual)
-    if (control == "pattern") != (usual == "pattern"):
-        raise ConfigError(
-            f"control = {control!r}: the tuned settings for {env_id} are for {usual!r}; name an "
-            "environment with that control instead"
-        )
-
-
-def _model(algorithm: str, env: BabbleVecEnv, settings: dict[str, Any], seed: int) -> Any:
-    """The untrained model."""
-    made = CLASSES[algorithm]
-    settings = converted(settings)
-    senses = settings.pop("senses", None)
-    if senses is not None:
-        settings["policy_kwargs"] = settings.get("policy_kwargs", {}) | {
-            "features_extractor_class": ChosenSenses,
-            "features_extractor_kwargs": {"senses": tuple(senses)},
-        }
-    noise_type = settings.pop("noise_type", None)
-    if noise_type is not None:
-        check_choice("settings.noise_type", noise_type, ("normal",))
-        (width,) = env.action_space.shape or ()
-        noise = NormalActionNoise(np.zeros(width), np.full(width, settings.pop("noise_std")))
-        settings["action_noise"] = noise
-    _check_goals(env, settings)
-    try:
-        model = made(env=env, seed=seed, device="cpu", **settings)
-    except (AssertionError, TypeError, ValueError) as error:
-        raise ConfigError(f"settings of {algorithm}: {error}") from error
-    # The model has seeded environment i with seed + i, so nearby seeds would share most cases.
-    env.seed(seed * env.num_envs)
-    return model
-
-
-def setting_names(algorithm: str) -> list[str]:
-    """The settings that an algorithm has."""
-    arguments = inspect.signature(CLASSES[algorithm]).parameters
-    return [name for name in (*arguments, *OURS) if name not in DECIDED]
-
-
-def _check_goals(env: BabbleVecEnv, settings: Mapping[str, Any]) -> None:
-    """Raises `ConfigError` for hindsight replay without goals."""
-    goals = "desired_goal" in getattr(env.observation_space, "spaces", {})
-    if settings.get("replay_buffer_class") is HerReplayBuffer and not goals:
-        raise ConfigError(
-            "replay_buffer_class = HerReplayBuffer needs goals: learn in BabbleReachGoal-v0 or "
-            "BabbleGraspGoal-v0"
-        )
+def _mapping(name: str, value: Any) -> Mapping[str, Any]:
+    if not isinstance(value, Mapping):
+        raise ConfigError(f"settings.{name} = {shown(value)} is not a table of names and values")
+    return value
 
 
 def control_steps_per_step(arguments: EnvArguments) -> int:

@@ -51,10 +51,10 @@ class GoalBabbling(Learning):
     In grasping it babbles with the object in the hand, as `HebbBabbling` does, but chooses where
     the arm goes. Goals are directions in which the eye sees objects of sampled cases; a babble
     moves in three equal steps from the last goal to a new one. What is learnt is the arm's posture
-    as it is, q, and where the eye finds the object in the hand, x. The weights are the paper's, at most 1: with a dash for
-    the step before, w = ½ (1 + cos(x* − x*', x − x')) |x − x'| / |q − q'|, but 0 if the hand lost
-    or hid the object. Some babbles begin at home, the middle of the arm's ranges, with w = 1. The
-    hand does not learn: it closes as the reflex does.
+    q as it is, and where the eye finds the object in the hand, x. The weights are the paper's, at
+    most 1: with a dash for the step before, w = ½ (1 + cos(x* − x*', x − x')) |x − x'| / |q − q'|,
+    but 0 if the hand lost or hid the object. Some babbles begin at home, the middle of the arm's
+    ranges, with w = 1. The hand does not learn: it closes as the reflex does.
 
     `learn(babbles)` counts all movements, or babbles, that it makes; `learnt` those with a weight.
 

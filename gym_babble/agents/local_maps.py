@@ -63,7 +63,7 @@ class LocalMaps:
     def _near(
         self, x: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
-        """Shares f (n,), ((x − p) / r, 1) (n, inputs + 1), and the distance to the nearest place."""
+        """Shares f (n,), ((x − p) / r, 1) (n, inputs + 1), and distance to the nearest place."""
         offsets = x - self.places
         squares = np.square(offsets).sum(axis=1)
         least = squares.min()

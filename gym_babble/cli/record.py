@@ -18,6 +18,7 @@ from gym_babble.cli.arguments import (
 )
 from gym_babble.cli.output import name_files, say
 from gym_babble.envs.registry import ENVIRONMENTS, TASKS
+from gym_babble.errors import ConfigError
 from gym_babble.files import check_file, write_file
 from gym_babble.study.scenarios import PROTOCOLS
 from gym_babble.viz.film import Film, panel_width
@@ -93,7 +94,12 @@ def record(
     config: OwnConfig = None,
     vec_normalize: VecNormalizeFile = None,
 ) -> None:
-    """Film agents side by side on the same cases: with the eye's view and Hebb agents' maps."""
+    """Film agents side by side on the same cases, with the eye's view.
+
+    Below a Hebb agent are its maps: what it sees, the weights, and what it recalls, with a ring
+    where the map is read out. "Weights out" are those from the most active input neuron, "weights
+    in" those to the most active output neuron. Red is positive, blue negative.
+    """
     check_file(file, "--out")
     check_film(file)
     given = {"seed": seed, "options": given_options(control=control), "config": config}
@@ -128,7 +134,11 @@ def _load(
             row = next(row for row in ENVIRONMENTS if row.task == there.task)
             where |= {"env_id": row.id, "config": there.config, "options": there.options}
         statistics = vec_normalize if name in zips or not zips else None
-        found[i] = named_agent(name, vec_normalize=statistics, **where)
+        try:
+            found[i] = named_agent(name, vec_normalize=statistics, **where)
+        except ConfigError as error:
+            said = str(error)
+            raise ConfigError(said if said.startswith(name) else f"{name}: {said}") from error
     return [found[i] for i in range(len(names))]
 
 

@@ -106,9 +106,9 @@ def _association(
     seen = _picture(name, g)
     recalled = _picture(output, a)
     return (
-        MapPicture(f"sees: {name.replace('_', ', ')}", seen, 0.0, _most(seen), ACTIVITY),
+        MapPicture(name.replace("_", ", "), seen, 0.0, _most(seen), ACTIVITY),
         MapPicture(title, weights, -w_max, w_max, WEIGHTS),
-        MapPicture(f"recalls: {output}", recalled, 0.0, _most(recalled), ACTIVITY, mark),
+        MapPicture(output, recalled, 0.0, _most(recalled), ACTIVITY, mark),
     )
 
 

@@ -6,6 +6,7 @@ from copy import copy
 from typing import TYPE_CHECKING, Any
 
 from gym_babble.agents import HebbBabbling
+from gym_babble.agents.acting import EnvArguments
 from gym_babble.agents.loading import LoadedAgent
 from gym_babble.checks import check_choice
 from gym_babble.envs.registry import TASKS
@@ -18,6 +19,8 @@ from gym_babble.viz.panel import Panel
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
+
+    from gym_babble.viz.episode import Episode
 
 __all__ = ["check_same_task", "find_cases", "play_scene", "stages"]
 
@@ -98,14 +101,15 @@ def play_scene(
             episode = play(loaded, case)
         except (ActionError, ConfigError, ScenarioError) as error:
             raise type(error)(f"{title}: {error}") from error
-        panels.append(Panel(title, _detail(loaded), episode, camera))
+        panels.append(Panel(title, _detail(episode), episode, camera))
     return Scene(panels, caption)
 
 
-def _detail(loaded: LoadedAgent) -> str:
-    where = loaded.arguments.title
-    if isinstance(loaded.agent, HebbBabbling):
-        return f"{where}, {loaded.agent.learnt:,} babbles learnt"
+def _detail(episode: Episode) -> str:
+    """Where the agent played, which is the case's region, and how much it has learnt."""
+    where = EnvArguments.of(episode.env.interface).title
+    if isinstance(episode.agent, HebbBabbling):
+        return f"{where}, {episode.agent.learnt:,} babbles learnt"
     return where
 
 

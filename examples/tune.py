@@ -59,6 +59,9 @@ PPO = {
 SPACES = {"ppo": PPO, "sac": OFF_POLICY, "td3": {**OFF_POLICY, "noise_std": [0.1, 0.2, 0.4]}}
 """Choices for each setting. The others stay as they are."""
 
+OF_THE_FILE = ("n_timesteps", "env_kwargs")
+"""What `train_tuned` takes from the file."""
+
 DISCOUNTS = {"gamma": [0.95, 0.98, 0.99]}
 """Where an episode has more than one step."""
 
@@ -81,7 +84,7 @@ def one_trial(algorithm: str, env_id: str, settings: dict[str, Any], plan: dict[
     cases = scenarios(task_of(env_id).protocol, plan["cases"], split="validation")
     scores = []
     for seed in plan["seeds"]:
-        given = {name: value for name, value in settings.items() if name != "n_timesteps"}
+        given = {name: value for name, value in settings.items() if name not in OF_THE_FILE}
         model = train_tuned(algorithm, env_id, seed=seed, steps=plan["steps"], settings=given)
         scores.append(evaluate(model, cases=cases, threads=1).rate("success"))
     return {

@@ -28,7 +28,7 @@ RUNS = {
     ),
     "ppo_reach.py": ("--steps 512 --cases 20", r"success 0\.\d+ \[0\.\d+, .+\]"),
     "tune.py": (
-        "td3 BabbleReachPattern-v0 --steps 300 --seeds 1 --cases 20 --trials 2 --out {folder}",
+        "sac BabbleReachGoal-v0 --steps 300 --seeds 1 --cases 20 --trials 2 --out {folder}",
         r"best of 2: [01]\.\d{3} with \{.+\}",
     ),
     "sensitivity.py": (

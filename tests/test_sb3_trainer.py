@@ -50,7 +50,8 @@ def cases_of(trainer, n=20):
 
 @pytest.mark.parametrize("agent", AGENTS)
 def test_same_seed_same_bits_whatever_happens_in_pauses(agent):
-    steps = 128 * AGENTS[agent][3]
+    rollout = 64 if agent.startswith("ppo") else 32
+    steps = 2 * rollout * AGENTS[agent][3]
 
     def trained(seed, *stops, test=False):
         trainer = made(agent, seed=seed, budget=steps)
@@ -139,6 +140,7 @@ def test_sees_its_senses_and_no_others(name, senses):
         assert same == (sense not in senses)
 
 
+@pytest.mark.slow
 def test_ppo_learns_whole_movements():
     model = train_tuned("ppo", "BabbleReachPattern-v0", seed=3, steps=6_000)
     assert model.num_timesteps == 6_144

@@ -19,9 +19,9 @@ from gym_babble.errors import ConfigError
 from gym_babble.report.charts import learning_charts
 from gym_babble.report.citation import bibtex
 from gym_babble.report.data import AXES, tasks_of
+from gym_babble.report.formats import count, seconds
 from gym_babble.report.joined import read_joined
 from gym_babble.report.numbers import task_numbers
-from gym_babble.report.rendering import count, seconds
 from gym_babble.report.writing import REPORT_FILES, write_report
 from gym_babble.study.rates import share
 from gym_babble.study.run import execute, runs_of

@@ -1,6 +1,7 @@
 """The tuned settings: read as rl-zoo3 reads them, without running their text."""
 
 import json
+from pathlib import Path
 from statistics import mean
 
 import pytest
@@ -50,10 +51,12 @@ def test_each_block_is_of_a_known_environment_and_has_known_settings(algorithm, 
     assert tuned_settings(algorithm, env_id).keys() <= known
 
 
-@pytest.mark.parametrize("name", ["sac_BabbleReachPattern-v0"])
-def test_the_files_follow_from_the_search(repository, name):
-    text = (repository / "docs" / "studies" / "tuning" / f"{name}.json").read_text(encoding="utf-8")
-    record = json.loads(text)
+TUNING = Path(__file__).parent.parent / "docs" / "studies" / "tuning"
+
+
+@pytest.mark.parametrize("path", sorted(TUNING.glob("*.json")), ids=lambda path: path.stem)
+def test_the_files_follow_from_the_search(path):
+    record = json.loads(path.read_text(encoding="utf-8"))
     trials = record["trials"]
     assert 1 <= len(trials) <= 20
     assert sum(trial["cpu_seconds"] for trial in trials) <= 2 * 3_600

@@ -6,7 +6,7 @@ import re
 from html import escape
 from typing import TYPE_CHECKING
 
-from gym_babble.viz.style import FAINT, GRID, INK, OBJECT
+from gym_babble.viz.style import FAINT, GRID, INK, OBJECT, RED
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -19,6 +19,7 @@ VARIABLES: Mapping[str, str] = {
     GRID: "var(--line)",
     "#ffffff": "var(--page)",
     OBJECT: "var(--object)",
+    RED: "var(--red)",
 }
 """Colours of figures that the page's style replaces, on light and on dark paper."""
 

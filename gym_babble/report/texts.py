@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from gym_babble.report.formats import seconds
 from gym_babble.study.rates import share
 from gym_babble.study.tasks import task_named
 
@@ -173,7 +174,6 @@ def methods(document: dict[str, Any]) -> dict[str, str]:
     tasks = document["tasks"]
     tests = " ".join(_tests(task) for task in tasks if task["cases"])
     runs = sum(len(agent["runs"]) for task in tasks for agent in task["agents"])
-    hours = document["cpu_seconds"] / 3600
     return {
         "tests": f"{tests} All agents of a task were tested on the same cases, with deterministic "
         "actions and one episode for each case.",
@@ -191,7 +191,8 @@ def methods(document: dict[str, Any]) -> dict[str, str]:
         "budgets": "A seed's budget for a level of success is that of the first checkpoint that "
         "reached it. Seeds that did not reach it within their budget are censored: medians over "
         "seeds and ratios of medians are then bounds.",
-        "machines": f"{_count(runs, 'run')} used {hours:.2g} hours of CPU time for learning, on "
+        "machines": f"{_count(runs, 'run')} used {seconds(document['cpu_seconds'])} of CPU time "
+        "for learning, on "
         f"{' and '.join(document['machines'])}, with gym-babble {_listed(document, 'gym-babble')}, "
         f"physics {', '.join(document['physics'])}.",
     }

@@ -116,8 +116,8 @@ class SB3Trainer:
             pass
         except ValueError as error:
             self.check_weights(error)
-            if "Expected parameter" in str(error):  # PyTorch's distributions: a scale of 0.
-                raise self._diverged(str(error).splitlines()[0]) from error
+            if "Expected parameter" in str(error):  # From PyTorch's distributions.
+                raise self._diverged("its actions have no mean or no deviation") from error
             raise
         self.check_weights()
         pause()

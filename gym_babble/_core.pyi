@@ -16,15 +16,19 @@ __all__ = [
     "Reference",
     "Task",
     "__version__",
+    "act_on",
     "babble",
     "babble_steps",
+    "babble_to",
     "brain_json",
+    "check_deciding",
     "check_fixed",
     "complete_config",
     "debug_build",
     "generator_curve",
     "grasp_posture",
     "hold",
+    "learnable_babbles",
     "load_config",
     "movement",
     "outcomes",
@@ -34,8 +38,11 @@ __all__ = [
     "processors",
     "profile_config",
     "profiles",
+    "read_tensors",
     "registry_json",
     "rule_json",
+    "tensor_keys",
+    "write_tensors",
 ]
 
 __version__: str
@@ -98,6 +105,33 @@ def babble_steps(task: Task) -> int: ...
 def babble(
     task: Task, n: int, seed: int, babbling: str, period_s: float | None, threads: int
 ) -> _Babbled: ...
+def learnable_babbles(
+    task: Task,
+    n: int,
+    seed: int,
+    babbled: int,
+    learnt: int,
+    period_s: float | None,
+    threads: int,
+) -> tuple[_Babbled, int, int]: ...
+def babble_to(
+    task: Task, seed: int, first: int, postures: NDArray[np.float64], threads: int
+) -> _Babbled: ...
+def write_tensors(key: str, json: str, arrays: list[tuple[str, NDArray[np.float32]]]) -> bytes: ...
+def read_tensors(
+    key: str,
+    bytes: bytes,  # noqa: A002 - Rust's name
+    names: list[str],
+) -> tuple[str, dict[str, NDArray[np.float32]]]: ...
+def tensor_keys(bytes: bytes) -> list[str]: ...  # noqa: A002 - Rust's name
+def check_deciding(task: Task) -> None: ...
+def act_on(
+    task: Task,
+    decide: Callable[[NDArray[np.float32]], NDArray[np.float64]],
+    senses: NDArray[np.float32],
+    starts: list[bool],
+    plans: Plans | None,
+) -> tuple[NDArray[np.float32], Plans]: ...
 def posture_at(task: Task, point: tuple[float, float]) -> list[float] | None: ...
 def movement(
     task: Task,
@@ -218,7 +252,9 @@ class Reference:
 
 @final
 class Learner:
-    def __new__(cls, task: Task, brain: str, seed: int, babbling: str, threads: int) -> Learner: ...
+    def __new__(
+        cls, task: Task, brain: str, seed: int, babbling: str, shuffled: bool, threads: int
+    ) -> Learner: ...
     @staticmethod
     def load(bytes: bytes, threads: int) -> Learner: ...  # noqa: A002 - Rust's name
     def __enter__(self) -> None: ...
@@ -228,6 +264,7 @@ class Learner:
     def brain(self) -> str: ...
     def babbling(self) -> str: ...
     def counts(self) -> tuple[int, int, int]: ...
+    def shuffled(self) -> bool: ...
     def learn(self, task: Task, n: int, rule: _Rule | None = None) -> None: ...
     def check(self, task: Task) -> None: ...
     def predict(

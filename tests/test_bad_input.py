@@ -394,6 +394,8 @@ GRASP_ARGUMENTS = [
     ({"any_diameter_between": None}, "any_diameter_between"),
     ({"enclosure_reflex": "no"}, 'enclosure_reflex = "no"'),
     ({"enclosure_reflex": 1}, "enclosure_reflex = 1"),
+    ({"in_hand_starts": 1.5}, r"in_hand_starts = 1.5.*a number in .0, 1"),
+    ({"in_hand_starts": "half"}, 'in_hand_starts = "half"'),
 ]
 ALL_ARGUMENTS = [
     *((task, *row) for task in TASKS for row in ARGUMENTS),

@@ -553,7 +553,7 @@ def test_states_of_other_tasks_and_choices_are_refused():
     env.reset(seed=0)
     before = env.state_hash()
     foreign = [reach.get_state()]
-    for other in ({"region": "full"}, {"enclosure_reflex": True}, {"diameters": [0.03]}):
+    for other in ({"region": "full"}, {"enclosure_reflex": True}, {"in_hand_starts": 1}):
         made = BabbleGraspEnv(**other)
         made.reset(seed=0)
         foreign.append(made.get_state())

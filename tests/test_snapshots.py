@@ -46,6 +46,7 @@ def kinds(draw: st.DrawFn) -> tuple[str, dict[str, Any]]:
     if task == "grasp":
         extra["enclosure_reflex"] = draw(st.booleans())
         extra["any_diameter_between"] = draw(st.booleans())
+        extra["in_hand_starts"] = draw(st.sampled_from([0.0, 0.5]))
         config["body"] = {"engine": engine}
     elif choices["obs"] != "goal":
         extra["settled"] = draw(st.booleans())

@@ -2,16 +2,23 @@
 
 from gym_babble.agents.babbling import Experiences, babble
 from gym_babble.agents.base import Agent
+from gym_babble.agents.goal_babbling import GoalBabbling
 from gym_babble.agents.hebb import HebbBabbling
 from gym_babble.agents.loading import load_agent
-from gym_babble.agents.reference import Oracle, Random, Scripted
+from gym_babble.agents.neighbours import NearestNeighbours
+from gym_babble.agents.reference import Oracle, Random, ReflexOnly, Scripted
+from gym_babble.agents.reward_hebb import RewardHebb
 
 __all__ = [
     "Agent",
     "Experiences",
+    "GoalBabbling",
     "HebbBabbling",
+    "NearestNeighbours",
     "Oracle",
     "Random",
+    "ReflexOnly",
+    "RewardHebb",
     "Scripted",
     "babble",
     "load_agent",

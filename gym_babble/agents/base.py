@@ -141,7 +141,7 @@ def interface_of(env: EnvLike) -> Interface:
 
 
 class Planner:
-    """An agent of the core: it decides at the beginning of an episode, and acts on it.
+    """An agent that decides at the beginning of an episode, and acts on it as the core does.
 
     In reaching it chooses a whole movement. In `pattern` control an action is its choice; in
     `posture` and `delta_posture` control it plays the path of the pattern generators open loop. In
@@ -183,8 +183,14 @@ class Planner:
         if state is not None and not isinstance(state, _core.Plans):
             raise ConfigError(f"state = {shown(state)} is not what predict returned")
         starts = _starts(episode_start, len(batch))
-        actions, state = self._core.predict(self._interface.task, batch, starts, state)
+        actions, state = self._act(batch, starts, state)
         return (actions if senses.ndim > 1 else actions[0]), state
+
+    def _act(
+        self, senses: NDArray[np.float32], starts: list[bool], plans: Plans | None
+    ) -> tuple[NDArray[np.float32], Plans]:
+        """Actions (n, k) for flat senses (n, m), and the plans for the next call."""
+        return self._core.predict(self._interface.task, senses, starts, plans)
 
     def _senses(self, observation: Observation) -> NDArray[np.float32]:
         """Flat senses (m,) or (n, m) from any form of observation.

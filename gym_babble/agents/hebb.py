@@ -72,6 +72,9 @@ class HebbBabbling(Planner):
             (`gym_babble.brain.OwnRule`).
         seed: Seed of the babbling.
         quasi_static: In reaching, babble without the muscles' lag: faster, and less like the paper.
+        shuffled: Pair what is seen in a babble with what was done in the one before, moment by
+            moment: a control that learns from the same percepts and actions, but not which belong
+            together. Nothing is learnt from the first babble.
         threads: Threads that babble and learn; all processors if not given. Results do not depend
             on it.
         brain: Numbers of maps and rule that differ from the variant's, e.g.
@@ -91,6 +94,7 @@ class HebbBabbling(Planner):
         rule: RuleLike | None = None,
         seed: int = 0,
         quasi_static: bool = False,
+        shuffled: bool = False,
         threads: int | None = None,
         brain: Mapping[str, Any] | None = None,
     ) -> None:
@@ -104,7 +108,12 @@ class HebbBabbling(Planner):
         self._rule: OwnRule | None = rule if is_own(rule) else None  # type: ignore[assignment]
         babbling = {"quasi_static": True} if check_flag("quasi_static", quasi_static) else None
         self._core = _core.Learner(
-            self._interface.task, json.dumps(numbers), seed, json.dumps(babbling), self._threads
+            self._interface.task,
+            json.dumps(numbers),
+            seed,
+            json.dumps(babbling),
+            check_flag("shuffled", shuffled),
+            self._threads,
         )
         self._core.check(self._interface.task)
 
@@ -215,6 +224,7 @@ class HebbBabbling(Planner):
             json.dumps(self.brain),
             self.seed,
             self._core.babbling(),
+            self.shuffled,
             self._threads,
         )
         return agent
@@ -288,6 +298,11 @@ class HebbBabbling(Planner):
         return str(self.brain.get("variant", "paper"))
 
     @property
+    def shuffled(self) -> bool:
+        """Whether it learns from shuffled pairs."""
+        return self._core.shuffled()
+
+    @property
     def weights(self) -> dict[str, NDArray[np.float32]]:
         """Copies of the weights and running averages, by name; assign such a dict to set them.
 
@@ -344,7 +359,10 @@ class HebbBabbling(Planner):
         return self._core.counts()[0]
 
     def experiences(self) -> Experiences:
-        """What it has learnt from, in its order, made again: it keeps none."""
+        """What it has learnt from, in its order, made again: it keeps none.
+
+        Percepts are with their own actions, also if it learns from shuffled pairs.
+        """
         seed, babbled, _ = self._core.counts()
         options = self._core.babbling()
         made = experiences_of(

@@ -10,13 +10,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gym_babble import _core
 from gym_babble.agents.acting import EnvArguments, arguments_for, carried
 from gym_babble.agents.base import predictor
+from gym_babble.agents.deciding import Learning, key_of
+from gym_babble.agents.goal_babbling import GoalBabbling
 from gym_babble.agents.hebb import HebbBabbling
 from gym_babble.agents.models import fitted, is_model, load_model, load_normalizer
-from gym_babble.agents.reference import Oracle, Random, Scripted
+from gym_babble.agents.neighbours import NearestNeighbours
+from gym_babble.agents.reference import Oracle, Random, ReflexOnly, Scripted
+from gym_babble.agents.reward_hebb import RewardHebb
+from gym_babble.checks import check_path
 from gym_babble.envs.registry import environment
-from gym_babble.errors import ConfigError
+from gym_babble.errors import AgentFileError, ConfigError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -34,7 +40,9 @@ __all__ = [
     "own_class",
 ]
 
-REFERENCES = ("random", "scripted", "oracle")
+REFERENCES = ("random", "scripted", "oracle", "reflex-only")
+IN_FILES = {key_of(cls.KIND): cls for cls in (NearestNeighbours, GoalBabbling, RewardHebb)}
+"""Agents that learn in Python, by what their files' headers call them."""
 PATTERN = "BabbleReachPattern-v0"
 # Where an agent from a file acts unless told, by its task.
 ACTS_IN = {"reach": PATTERN, "grasp": "BabbleGrasp-v0"}
@@ -48,8 +56,8 @@ class LoadedAgent:
     arguments: EnvArguments
 
 
-def load_agent(path: str | Path, env: EnvLike | None = None) -> HebbBabbling:
-    """The agent in a file that `HebbBabbling.save` wrote, of either task.
+def load_agent(path: str | Path, env: EnvLike | None = None) -> HebbBabbling | Learning:
+    """The agent in a file that `save` wrote, of any kind that learns by babbling and either task.
 
     Args:
         path: The file.
@@ -61,7 +69,12 @@ def load_agent(path: str | Path, env: EnvLike | None = None) -> HebbBabbling:
         AgentFileError: The file is cut short, altered, or not an agent.
         ConfigError: It cannot act in the environment.
     """
-    return HebbBabbling.load(path, env)
+    try:
+        keys = _core.tensor_keys(check_path("path", path).read_bytes())
+    except ValueError as error:
+        raise AgentFileError(f"{path}: {error}") from error
+    cls = next((IN_FILES[key] for key in keys if key in IN_FILES), HebbBabbling)
+    return cls.load(path, env)
 
 
 def acting_agent(
@@ -99,7 +112,8 @@ def named_agent(
     """An agent by name, from a file, or your own.
 
     Args:
-        name: "random", "scripted" or "oracle"; a file that `HebbBabbling.save` wrote ("./random" if
+        name: "random", "scripted", "oracle" or "reflex-only"; a file that `save` of an agent that
+            babbles wrote ("./random" if
             it is called like one of these agents); a zip that stable-baselines3 wrote, which holds
             pickled Python: load only those you trust; or "module:Class", a class of your own, found
             from the current folder (see `own_agent`).
@@ -247,11 +261,14 @@ def _reference(
     seed: int,
     options: Mapping[str, Any],
 ) -> LoadedAgent:
-    arguments = arguments_for(None, env_id or PATTERN, config, options)
+    where = env_id or ("BabbleGrasp-v0" if name == "reflex-only" else PATTERN)
+    arguments = arguments_for(None, where, config, options)
     env = arguments.single()
-    agent: Random | Scripted | Oracle
+    agent: Random | ReflexOnly | Scripted | Oracle
     if name == "random":
         agent = Random(env, seed=seed)
+    elif name == "reflex-only":
+        agent = ReflexOnly(env, seed=seed)
     elif name == "scripted":
         agent = Scripted(env)
     else:

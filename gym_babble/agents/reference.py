@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from gym_babble.agents.base import EnvLike, Observation
 
-__all__ = ["Oracle", "Random", "Scripted"]
+__all__ = ["Oracle", "Random", "ReflexOnly", "Scripted"]
 
 
 class _Reference(Planner):
@@ -73,6 +73,28 @@ class Random(_Reference):
 
     def __init__(self, env: EnvLike = "BabbleReachPattern-v0", *, seed: int | None = None) -> None:
         super().__init__(env, seed=secrets.randbits(64) if seed is None else seed)
+
+
+class ReflexOnly(_Reference):
+    """Grasps by chance and reflex: the arm goes to a random posture, and the hand closes on touch.
+
+    In each episode the posture is uniform in the arm's joint ranges, whatever is seen. On the first
+    touch the hand closes as the enclosure reflex does. It shows how much of grasping the reflex
+    does alone.
+
+    Args:
+        env: An id or an environment of grasping.
+        seed: Seed of its choices.
+
+    Raises:
+        ConfigError: An argument is out of its bounds, or it is not an environment of grasping, or
+            one in which it cannot act.
+    """
+
+    _name = "reflex"
+
+    def __init__(self, env: EnvLike = "BabbleGrasp-v0", *, seed: int = 0) -> None:
+        super().__init__(env, seed=seed)
 
 
 class Scripted(_Reference):

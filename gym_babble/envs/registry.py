@@ -29,7 +29,7 @@ class Option:
 
     name: str
     kind: str
-    """"choice", "flag", "whole" or "numbers"."""
+    """One of "choice", "flag", "whole", "number" and "numbers"."""
     default: Any
     """None where the task or the config decides."""
     doc: str

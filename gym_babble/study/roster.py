@@ -99,6 +99,52 @@ ROSTER = {
         sees="obstacle × eye",
         settings={"variant": "conjunctive"},
     ),
+    "nearest-neighbour": RosterAgent(
+        title="Nearest neighbours",
+        trainer="babbling:nearest_neighbours",
+        tasks={
+            "reach": Place(PATTERN, 24_400_000, (GENERATORS,)),
+            "grasp": Place(GRASP, 160_000, (REFLEX, IN_HAND)),
+        },
+        sees="obstacle × eye; eye and fovea",
+        in_compare=False,
+    ),
+    "goal-babbling": RosterAgent(
+        title="Goal babbling",
+        trainer="babbling:goal_babbling",
+        tasks={
+            "reach": Place(PATTERN, 24_400_000, (GENERATORS,)),
+            "grasp": Place(GRASP, 160_000, (REFLEX, IN_HAND)),
+        },
+        sees="obstacle × eye; eye",
+        in_compare=False,
+    ),
+    "reward-hebb": RosterAgent(
+        title="Reward-modulated Hebb",
+        trainer="babbling:reward_hebb",
+        tasks={"reach": Place(PATTERN, 24_400_000, (GENERATORS,))},
+        sees="obstacle × eye",
+        in_compare=False,
+    ),
+    "shuffled-pairs": RosterAgent(
+        title="Hebb, shuffled pairs",
+        trainer="babbling:hebb",
+        tasks={
+            "reach": Place(PATTERN, 24_400_000, (GENERATORS,)),
+            "grasp": Place(GRASP, 160_000, (REFLEX, IN_HAND)),
+        },
+        sees="obstacle; eye and fovea",
+        settings={"shuffled": True},
+        in_compare=False,
+    ),
+    "reflex-only": RosterAgent(
+        title="Reflex only",
+        trainer="still:reference",
+        tasks={"grasp": Place(GRASP, 0, (REFLEX,))},
+        sees="touch",
+        settings={"name": "reflex-only"},
+        in_compare=False,
+    ),
     "ppo": RosterAgent(
         title="PPO step by step",
         trainer="sb3:ppo",
@@ -132,6 +178,14 @@ ROSTER = {
         tasks={"grasp": Place(GRASP, 2_500_000, (REFLEX,))},
         sees="all",
         options={"enclosure_reflex": True},
+        in_compare=False,
+    ),
+    "ppo-in-hand": RosterAgent(
+        title="PPO step by step, half of the starts in the hand",
+        trainer="sb3:ppo",
+        tasks={"grasp": Place(GRASP, 2_500_000, (IN_HAND,))},
+        sees="all",
+        settings={"learning_options": {"in_hand_starts": 0.5}},
         in_compare=False,
     ),
     "sac": RosterAgent(

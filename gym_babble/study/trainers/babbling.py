@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from gym_babble.agents import HebbBabbling
+from gym_babble.agents import GoalBabbling, HebbBabbling, NearestNeighbours, RewardHebb
 from gym_babble.study.trainers.base import Cost, arguments_of, check_settings
 
 if TYPE_CHECKING:
@@ -13,7 +13,13 @@ if TYPE_CHECKING:
     from gym_babble.agents.acting import EnvArguments
     from gym_babble.study.trainers.base import Order
 
-__all__ = ["BabblingTrainer", "hebb"]
+__all__ = [
+    "BabblingTrainer",
+    "goal_babbling",
+    "hebb",
+    "nearest_neighbours",
+    "reward_hebb",
+]
 
 PIECE = {"reach": 10, "grasp": 5}
 """Babbles to learn from between two pauses, by task. What is learnt does not depend on it."""
@@ -53,9 +59,33 @@ class BabblingTrainer:
         return ".safetensors", self.agent.to_bytes()
 
 
+def nearest_neighbours(order: Order) -> BabblingTrainer:
+    """Random babbling with a nearest-neighbour inverse model; its setting is `k`."""
+    settings = check_settings(order, ("k",))
+    arguments = arguments_of(order, ACTS_IN[order.task])
+    agent = NearestNeighbours(arguments.single(), seed=order.seed, threads=1, **settings)
+    return BabblingTrainer(agent, arguments)
+
+
+def goal_babbling(order: Order) -> BabblingTrainer:
+    """Online goal babbling; its settings are `radius`, `rate` and `noise` of `GoalBabbling`."""
+    settings = check_settings(order, ("radius", "rate", "noise"))
+    arguments = arguments_of(order, ACTS_IN[order.task])
+    agent = GoalBabbling(arguments.single(), seed=order.seed, **settings)
+    return BabblingTrainer(agent, arguments)
+
+
+def reward_hebb(order: Order) -> BabblingTrainer:
+    """Reward-modulated Hebb; its settings are `eta` and `noise` of `RewardHebb`."""
+    settings = check_settings(order, ("eta", "noise"))
+    arguments = arguments_of(order, ACTS_IN[order.task])
+    agent = RewardHebb(arguments.single(), seed=order.seed, **settings)
+    return BabblingTrainer(agent, arguments)
+
+
 def hebb(order: Order) -> BabblingTrainer:
-    """The paper's agent; its settings are `variant`, `rule` and `brain` of `HebbBabbling`."""
-    settings = check_settings(order, ("variant", "rule", "brain"))
+    """The paper's agent; its settings are `variant`, `rule`, `brain` and `shuffled`."""
+    settings = check_settings(order, ("variant", "rule", "brain", "shuffled"))
     arguments = arguments_of(order, ACTS_IN[order.task])
     agent = HebbBabbling(arguments.single(), seed=order.seed, threads=1, **settings)
     return BabblingTrainer(agent, arguments)

@@ -94,6 +94,9 @@ pub trait Babble: Task {
     /// Whether an experience can be learnt from.
     fn is_learnable(experience: &Self::Experience) -> bool;
 
+    /// What an experience would have been with the action of another one.
+    fn with_action_of(experience: &Self::Experience, other: &Self::Experience) -> Self::Experience;
+
     /// How a babble ended.
     fn outcome(experience: &Self::Experience) -> Outcome;
 
@@ -197,10 +200,36 @@ impl<T: Babble> Babbling<T> {
         n: usize,
         executor: &mut Executor,
     ) -> Result<Vec<T::Experience>, AgentError> {
+        Ok(self.by_babble(task, n, executor)?.concat())
+    }
+
+    /// The same, apart for each babble.
+    ///
+    /// # Errors
+    /// As [`experience`](Self::experience).
+    pub fn by_babble(
+        &mut self,
+        task: &T,
+        n: usize,
+        executor: &mut Executor,
+    ) -> Result<Vec<Vec<T::Experience>>, AgentError> {
         let mut ahead = *self;
         let found = ahead.search(task, n, executor)?;
         *self = ahead;
         Ok(found)
+    }
+
+    /// What the last babble that could be learnt from left behind, made again; nothing before it. The
+    /// sequence always stops after such a babble.
+    ///
+    /// # Errors
+    /// An error of the task.
+    pub(crate) fn last(&self, task: &T) -> Result<Vec<T::Experience>, EnvError> {
+        if self.babbled == 0 {
+            return Ok(Vec::new());
+        }
+        let mut stream = Stream::new(Purpose::Learning, self.seed, self.babbled - 1);
+        task.babble(self.options, self.period_s, &mut stream, false)
     }
 
     fn search(
@@ -208,7 +237,7 @@ impl<T: Babble> Babbling<T> {
         task: &T,
         n: usize,
         executor: &mut Executor,
-    ) -> Result<Vec<T::Experience>, AgentError> {
+    ) -> Result<Vec<Vec<T::Experience>>, AgentError> {
         let (mut left, mut found) = (n, Vec::with_capacity(n));
         while left > 0 {
             let count = CHUNK.min(left.saturating_mul(T::TRIES));
@@ -220,7 +249,7 @@ impl<T: Babble> Babbling<T> {
                 if !experiences.is_empty() {
                     self.learnt += 1;
                     left -= 1;
-                    found.extend(experiences);
+                    found.push(experiences);
                 }
             }
             if self.babbled > T::RAREST * (self.learnt + 1) {

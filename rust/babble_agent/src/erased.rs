@@ -12,17 +12,18 @@ use serde_json::Value;
 
 use crate::babbling::{Babble, Babbling, Column, babble};
 use crate::error::AgentError;
+use crate::grasp::babbling::POSTURES;
 use crate::grasp::policy::{self as grasping, GraspPolicy, RandomActions};
 use crate::grasp::{self, GraspNetwork};
 use crate::learner::Learner;
 use crate::network::{Network, Percept, Recall};
-use crate::policy::{Policy, Random};
+use crate::policy::{Decisions, Policy, Random};
 use crate::reach::ReachNetwork;
 use crate::reach::policy::{self as reaching, ReachPolicy};
 use crate::rule::RuleOfOnesOwn;
 use crate::tensors;
 
-/// Names of the agents that need no learning.
+/// Names of the agents that need no learning and act in all tasks; "reflex" acts in grasping alone.
 pub const REFERENCES: [&str; 3] = ["random", "scripted", "oracle"];
 
 /// An agent that needs no learning, by name. The random one goes on with the choices of `random`.
@@ -34,7 +35,7 @@ pub fn reference<'a>(
     task: &Arc<dyn AnyTask>,
     random: &'a Random,
 ) -> Result<Box<dyn Policy + 'a>, AgentError> {
-    if !REFERENCES.contains(&name) {
+    if !(REFERENCES.contains(&name) || name == "reflex") {
         return Err(AgentError::Config {
             field: "agent",
             problem: format!("{name:?} is not one of {}", REFERENCES.join(", ")),
@@ -44,6 +45,10 @@ pub fn reference<'a>(
         return match name {
             "random" => boxed(ReachPolicy::new(task, random)),
             "scripted" => boxed(ReachPolicy::new(task, reaching::Scripted)),
+            "reflex" => Err(AgentError::Config {
+                field: "env",
+                problem: "a hand closes by reflex in grasping alone".to_owned(),
+            }),
             _ => boxed(ReachPolicy::new(task, reaching::Oracle)),
         };
     }
@@ -51,8 +56,25 @@ pub fn reference<'a>(
     match name {
         "random" => Ok(Box::new(RandomActions::new(task, random))),
         "scripted" => boxed(GraspPolicy::new(task, grasping::Scripted)),
+        "reflex" => boxed(GraspPolicy::new(task, random)),
         _ => boxed(GraspPolicy::new(task, grasp::Oracle)),
     }
+}
+
+/// An agent that acts on decisions which somebody else makes: in reaching, parameters (b1, b2) of a
+/// movement; in grasping, shoulder, elbow, and flexions of thumb and finger once the hand closes \[rad\].
+///
+/// # Errors
+/// [`AgentError::Config`] for a task or control in which it cannot act.
+pub fn deciding<'a>(
+    task: &Arc<dyn AnyTask>,
+    decisions: Decisions<'a>,
+) -> Result<Box<dyn Policy + 'a>, AgentError> {
+    if let Some(task) = downcast::<ReachTask>(task) {
+        return boxed(ReachPolicy::new(task, decisions));
+    }
+    let task = downcast::<GraspTask>(task).ok_or_else(other_task)?;
+    boxed(GraspPolicy::new(task, decisions))
 }
 
 fn boxed<'a>(
@@ -85,6 +107,12 @@ pub trait AnyLearner: Any + fmt::Debug + Send + Sync {
 
     /// Seed of its babbling.
     fn seed(&self) -> u64;
+
+    /// As [`Learner::shuffled`].
+    fn shuffled(&self) -> bool;
+
+    /// As [`Learner::shuffle`].
+    fn shuffle(&mut self);
 
     /// How its babbles are simulated, as JSON.
     fn options(&self) -> Result<Value, AgentError>;
@@ -152,6 +180,14 @@ impl<N: Network> AnyLearner for Learner<N> {
 
     fn seed(&self) -> u64 {
         self.babbling.seed()
+    }
+
+    fn shuffled(&self) -> bool {
+        Self::shuffled(self)
+    }
+
+    fn shuffle(&mut self) {
+        Self::shuffle(self);
     }
 
     fn options(&self) -> Result<Value, AgentError> {
@@ -345,6 +381,63 @@ pub fn babble_any(
     columns(&babbling, &*task, n, executor)
 }
 
+/// The babbles after `babbled` ones of a seed, of which `learnt` could be learnt from, until `n` more can
+/// be: what these leave behind, and both counts after them.
+///
+/// # Errors
+/// As [`babble_any`] and [`Babbling::experience`].
+pub fn learnable_any(
+    task: &Arc<dyn AnyTask>,
+    n: usize,
+    seed: u64,
+    [babbled, learnt]: [u64; 2],
+    period_s: Option<f64>,
+    executor: &mut Executor,
+) -> Result<(Experiences, [u64; 2]), AgentError> {
+    if let Some(task) = downcast::<ReachTask>(task) {
+        return learnable(&*task, n, seed, [babbled, learnt], period_s, executor);
+    }
+    let task = downcast::<GraspTask>(task).ok_or_else(other_task)?;
+    learnable(&*task, n, seed, [babbled, learnt], period_s, executor)
+}
+
+fn learnable<T: Babble>(
+    task: &T,
+    n: usize,
+    seed: u64,
+    [babbled, learnt]: [u64; 2],
+    period_s: Option<f64>,
+    executor: &mut Executor,
+) -> Result<(Experiences, [u64; 2]), AgentError> {
+    let options = T::Options::default();
+    let mut babbling = Babbling::<T>::resume(seed, options, babbled, learnt).every(period_s)?;
+    let found = babbling.by_babble(task, n, executor)?;
+    let counts = [babbling.babbled(), babbling.learnt()];
+    Ok((Experiences::of::<T>(learnt, &found), counts))
+}
+
+/// Babbles in grasping from number `first` of a seed on, to postures that somebody chooses for each, with
+/// an experience at the end of each movement.
+///
+/// # Errors
+/// [`AgentError::Config`] for another task; an error of the task or the executor.
+pub fn babble_to(
+    task: &Arc<dyn AnyTask>,
+    seed: u64,
+    first: u64,
+    postures: &[[[f64; 2]; POSTURES]],
+    executor: &mut Executor,
+) -> Result<Experiences, AgentError> {
+    let task = downcast::<GraspTask>(task).ok_or_else(other_task)?;
+    let made = executor.map(0..postures.len(), |i, _| {
+        crate::grasp::babbling::babble_to(&task, seed, first + i as u64, &postures[i])
+    });
+    Ok(Experiences::of::<GraspTask>(
+        first,
+        &made.map_err(AgentError::Env)?,
+    ))
+}
+
 /// Control steps that a babble takes in a task of any kind.
 ///
 /// # Errors
@@ -364,15 +457,22 @@ fn columns<T: Babble + Task>(
     executor: &mut Executor,
 ) -> Result<Experiences, AgentError> {
     let made = babble(babbling, task, n, executor)?;
-    let babbles = (0..)
-        .zip(&made)
-        .flat_map(|(k, one)| iter::repeat_n(k, one.len()));
-    let babbles = babbles.collect();
-    let all = made.concat();
-    Ok(Experiences {
-        babbles,
-        columns: T::columns(&all),
-        learnable: all.iter().map(T::is_learnable).collect(),
-        outcomes: all.iter().map(T::outcome).collect(),
-    })
+    Ok(Experiences::of::<T>(0, &made))
+}
+
+impl Experiences {
+    /// What babbles left behind, the first of which has the number `first`.
+    fn of<T: Babble>(first: u64, made: &[Vec<T::Experience>]) -> Self {
+        let babbles = (first..)
+            .zip(made)
+            .flat_map(|(k, one)| iter::repeat_n(k, one.len()));
+        let babbles = babbles.collect();
+        let all = made.concat();
+        Self {
+            babbles,
+            columns: T::columns(&all),
+            learnable: all.iter().map(T::is_learnable).collect(),
+            outcomes: all.iter().map(T::outcome).collect(),
+        }
+    }
 }

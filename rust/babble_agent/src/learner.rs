@@ -1,5 +1,7 @@
 //! A network and the babbling that it learns from.
 
+use std::iter;
+
 use babble_env::{Config, Executor, Task};
 use serde::{Deserialize, Serialize};
 
@@ -29,6 +31,8 @@ pub struct Learner<N: Network> {
     pub babbling: Babbling<N::Task>,
     /// Body and task that it babbles with.
     config: Config,
+    /// Whether percepts are paired with the action of the babble before.
+    shuffled: bool,
 }
 
 // Derived, it would ask for a task that can be copied.
@@ -38,6 +42,7 @@ impl<N: Network> Clone for Learner<N> {
             network: self.network.clone(),
             babbling: self.babbling,
             config: self.config.clone(),
+            shuffled: self.shuffled,
         }
     }
 }
@@ -56,6 +61,9 @@ struct Metadata<C, O> {
     seed: u64,
     /// How babbles are simulated.
     babbling: O,
+    /// Whether percepts are paired with the action of the babble before.
+    #[serde(default, skip_serializing_if = "is_false")]
+    shuffled: bool,
     /// Babbles made.
     babbled: u64,
     /// How many of them were learnt from.
@@ -80,7 +88,21 @@ impl<N: Network> Learner<N> {
             network,
             babbling,
             config,
+            shuffled: false,
         })
+    }
+
+    /// Pairs what is seen in a babble with what was done in the one before, of those that can be learnt
+    /// from; of the first one nothing is learnt. Such a network learns the same percepts and actions as
+    /// another, but not which belong together.
+    pub fn shuffle(&mut self) {
+        self.shuffled = true;
+    }
+
+    /// Whether pairs are shuffled.
+    #[must_use]
+    pub const fn shuffled(&self) -> bool {
+        self.shuffled
     }
 
     /// Body and task that it babbles with.
@@ -146,9 +168,18 @@ impl<N: Network> Learner<N> {
         }
         let mut learning = self.clone();
         let mut left = n;
+        let mut before = Vec::new();
+        if self.shuffled {
+            before = self.babbling.last(task)?;
+        }
         while left > 0 {
             let some = left.min(BABBLES);
-            let experiences = learning.babbling.experience(task, some, executor)?;
+            let babbles = learning.babbling.by_babble(task, some, executor)?;
+            let experiences = if self.shuffled {
+                shuffled::<N::Task>(&mut before, babbles)
+            } else {
+                babbles.concat()
+            };
             teach(&mut learning.network, &experiences, executor)?;
             left -= some;
         }
@@ -167,6 +198,7 @@ impl<N: Network> Learner<N> {
             config: self.config.clone(),
             seed: self.babbling.seed(),
             babbling: self.babbling.options(),
+            shuffled: self.shuffled,
             babbled: self.babbling.babbled(),
             learnt: self.babbling.learnt(),
         };
@@ -199,7 +231,7 @@ impl<N: Network> Learner<N> {
         let mut network = N::new(metadata.brain)?;
         for (i, [weights, a_mean, g_mean]) in values.as_chunks::<3>().0.iter().enumerate() {
             network
-                .set(i, weights, a_mean, g_mean)
+                .set(i, &weights.1, &a_mean.1, &g_mean.1)
                 .map_err(|error| AgentError::File {
                     problem: format!("{}{error}", N::PREFIXES[i]),
                 })?;
@@ -211,6 +243,7 @@ impl<N: Network> Learner<N> {
             network,
             babbling,
             config: metadata.config,
+            shuffled: metadata.shuffled,
         })
     }
 }
@@ -232,6 +265,29 @@ impl<C, O> Metadata<C, O> {
         };
         Err(AgentError::File { problem })
     }
+}
+
+/// What is seen in each babble with what was done in the one before, moment by moment; `before` is the
+/// babble before the first one, and becomes the last.
+fn shuffled<T: Babble>(
+    before: &mut Vec<T::Experience>,
+    babbles: Vec<Vec<T::Experience>>,
+) -> Vec<T::Experience> {
+    let mut all = Vec::new();
+    for babble in babbles {
+        if let Some(last) = before.last() {
+            let others = before.iter().chain(iter::repeat(last));
+            let pairs = babble.iter().zip(others);
+            all.extend(pairs.map(|(one, other)| T::with_action_of(one, other)));
+        }
+        *before = babble;
+    }
+    all
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+const fn is_false(flag: &bool) -> bool {
+    !*flag
 }
 
 /// Checks that a file is of the version that this code writes, before anything else of it is read.

@@ -10,7 +10,7 @@ pub mod network;
 pub mod policy;
 pub mod reach;
 pub mod rule;
-mod tensors;
+pub mod tensors;
 
 pub use babbling::{Babble, Babbling, babble};
 pub use erased::{AnyLearner, REFERENCES, reference};
@@ -18,6 +18,6 @@ pub use error::AgentError;
 pub use grasp::{GraspBrain, GraspNetwork};
 pub use learner::Learner;
 pub use network::{Activities, Network};
-pub use policy::{Plan, Policy, Random, predict};
+pub use policy::{Decisions, Plan, Policy, Random, predict};
 pub use reach::{ReachBabbling, ReachBrain, ReachNetwork, Variant};
 pub use rule::Rule;

@@ -124,6 +124,41 @@ impl Random {
     }
 }
 
+/// A function that decides for flat observations, one after the other: the numbers of each decision.
+pub type Decide<'a> = dyn Fn(&[f32]) -> Result<Vec<f64>, AgentError> + Send + Sync + 'a;
+
+/// Decisions that somebody else makes.
+#[derive(Clone, Copy)]
+pub struct Decisions<'a>(pub &'a Decide<'a>);
+
+impl fmt::Debug for Decisions<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Decisions")
+    }
+}
+
+impl Decisions<'_> {
+    /// The decisions of N numbers for `n` flat observations.
+    pub(crate) fn of<const N: usize>(
+        &self,
+        senses: &[f32],
+        n: usize,
+    ) -> Result<Vec<[f64; N]>, AgentError> {
+        let decided = (self.0)(senses)?;
+        let problem = if decided.len() != n * N {
+            format!("{} numbers for {n} decisions of {N}", decided.len())
+        } else if let Some(x) = decided.iter().find(|x| !x.is_finite()) {
+            format!("it has decided {x}")
+        } else {
+            return Ok(decided.as_chunks::<N>().0.to_vec());
+        };
+        Err(AgentError::Config {
+            field: "decide",
+            problem,
+        })
+    }
+}
+
 /// A flat observation, which has N numbers.
 pub(crate) fn observation<const N: usize>(senses: &[f32]) -> Result<&[f32; N], AgentError> {
     senses.try_into().map_err(|_| AgentError::Config {

@@ -13,10 +13,14 @@ use crate::error::AgentError;
 const CHECKSUM: &str = "{\"checksum\":\"";
 
 /// A tensor to be written.
-pub(crate) struct Tensor<'a> {
-    pub(crate) name: String,
-    pub(crate) shape: Vec<usize>,
-    pub(crate) values: &'a [f32],
+#[derive(Debug)]
+pub struct Tensor<'a> {
+    /// Its name.
+    pub name: String,
+    /// Its lengths along each axis.
+    pub shape: Vec<usize>,
+    /// Its numbers, the last axis fastest.
+    pub values: &'a [f32],
 }
 
 /// Names of an association's tensors: weights, averages of the output and of the input.
@@ -39,8 +43,11 @@ pub(crate) fn of<'a>(prefix: &str, w: &'a Association) -> [Tensor<'a>; 3] {
     ]
 }
 
-/// The bytes of a file; `key` names the JSON in the header.
-pub(crate) fn write(
+/// The bytes of a file; `key` names the JSON in the header, an object of at least one field.
+///
+/// # Errors
+/// [`AgentError::File`] for tensors whose numbers do not fit their shapes.
+pub fn write(
     key: &str,
     metadata: &impl Serialize,
     tensors: &[Tensor],
@@ -68,21 +75,24 @@ pub(crate) fn write(
 ///
 /// # Errors
 /// [`AgentError::File`] for bytes that are no safetensors file.
-pub(crate) fn keys(bytes: &[u8]) -> Result<Vec<String>, AgentError> {
+pub fn keys(bytes: &[u8]) -> Result<Vec<String>, AgentError> {
     let (_, header) = SafeTensors::read_metadata(bytes).map_err(|e| file(&e))?;
     let texts = header.metadata().as_ref();
     Ok(texts.map_or_else(Vec::new, |texts| texts.keys().cloned().collect()))
 }
 
+/// The shape and the numbers of a tensor that was read.
+pub type Shaped = (Vec<usize>, Vec<f32>);
+
 /// The JSON and the tensors of that `names` in a file's bytes.
 ///
 /// # Errors
 /// [`AgentError::File`] for bytes that are cut short, altered, or of another kind.
-pub(crate) fn read(
+pub fn read(
     key: &str,
     bytes: &[u8],
     names: &[String],
-) -> Result<(String, Vec<Vec<f32>>), AgentError> {
+) -> Result<(String, Vec<Shaped>), AgentError> {
     let tensors = SafeTensors::deserialize(bytes).map_err(|e| file(&e))?;
     let (_, header) = SafeTensors::read_metadata(bytes).map_err(|e| file(&e))?;
     let text = header
@@ -134,7 +144,7 @@ fn without_checksum(
     }
 }
 
-fn values(tensors: &SafeTensors<'_>, name: &str) -> Result<Vec<f32>, AgentError> {
+fn values(tensors: &SafeTensors<'_>, name: &str) -> Result<Shaped, AgentError> {
     let tensor = tensors.tensor(name).map_err(|e| file(&e))?;
     if tensor.dtype() != Dtype::F32 {
         return Err(AgentError::File {
@@ -142,7 +152,8 @@ fn values(tensors: &SafeTensors<'_>, name: &str) -> Result<Vec<f32>, AgentError>
         });
     }
     let four = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
-    Ok(tensor.data().chunks_exact(4).map(four).collect())
+    let values = tensor.data().chunks_exact(4).map(four).collect();
+    Ok((tensor.shape().to_vec(), values))
 }
 
 /// An error of a file, from any other.

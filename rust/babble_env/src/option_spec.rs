@@ -51,6 +51,13 @@ pub enum OptionKind {
         /// Unit of the number.
         unit: &'static str,
     },
+    /// A number.
+    Number {
+        /// Least value.
+        low: f64,
+        /// Greatest value.
+        high: f64,
+    },
     /// A list of numbers, at least one.
     Numbers {
         /// Least value of each.
@@ -72,6 +79,8 @@ pub enum OptionDefault {
     Flag(bool),
     /// A whole number.
     Whole(u32),
+    /// A number.
+    Number(f64),
     /// One of the names.
     Name(&'static str),
 }
@@ -82,6 +91,7 @@ impl OptionDefault {
             Self::Derived => Value::Null,
             Self::Flag(flag) => json!(flag),
             Self::Whole(whole) => json!(whole),
+            Self::Number(number) => json!(number),
             Self::Name(name) => json!(name),
         }
     }
@@ -148,6 +158,13 @@ impl OptionSpec {
                     return Ok(());
                 }
                 Err(self.refused(value, format!("a whole number in [{low}, {high}] {unit}")))
+            }
+            OptionKind::Number { low, high } => {
+                let fits = value.as_f64().is_some_and(|x| (low..=high).contains(&x));
+                if fits {
+                    return Ok(());
+                }
+                Err(self.refused(value, format!("a number in [{low}, {high}]")))
             }
             OptionKind::Numbers { low, high, unit } => {
                 let fits = |x: &Value| x.as_f64().is_some_and(|x| (low..=high).contains(&x));
@@ -241,6 +258,12 @@ impl OptionValues {
     pub fn whole(&self, option: &str) -> Option<u32> {
         let number = self.0.get(option)?.as_u64()?;
         u32::try_from(number).ok()
+    }
+
+    /// A number; 0 where the task has no such option.
+    #[must_use]
+    pub fn number(&self, option: &str) -> f64 {
+        self.0.get(option).and_then(Value::as_f64).unwrap_or(0.0)
     }
 
     /// A list of numbers; none where the task or the config decides.

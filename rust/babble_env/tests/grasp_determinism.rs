@@ -18,6 +18,7 @@ fn short(control: Control) -> Arc<GraspTask> {
     grasp(GraspOptions {
         max_episode_steps: 25,
         enclosure_reflex: true,
+        in_hand_starts: 0.3,
         ..with_control(control)
     })
 }

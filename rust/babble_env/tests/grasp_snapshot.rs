@@ -69,6 +69,7 @@ fn any_task() -> impl Strategy<Value = Arc<GraspTask>> {
                 region,
                 enclosure_reflex: reflex,
                 record,
+                in_hand_starts: if reflex { 0.5 } else { 0.0 },
                 ..options(control)
             };
             grasp_with(

@@ -46,9 +46,20 @@ struct Inner {
 impl Learner {
     /// A network that has learnt nothing, for a task; `brain` (complete) and `babbling` are JSON.
     #[new]
-    fn new(task: &Task, brain: &str, seed: u64, babbling: &str, threads: usize) -> PyResult<Self> {
+    fn new(
+        task: &Task,
+        brain: &str,
+        seed: u64,
+        babbling: &str,
+        shuffled: bool,
+        threads: usize,
+    ) -> PyResult<Self> {
         let (brain, babbling) = (value("brain", brain)?, value("babbling", babbling)?);
-        let learner = erased::learner(&task.task, brain, seed, babbling).map_err(errors::agent)?;
+        let learner = erased::learner(&task.task, brain, seed, babbling);
+        let mut learner = learner.map_err(errors::agent)?;
+        if shuffled {
+            learner.shuffle();
+        }
         Self::of(learner, threads)
     }
 
@@ -102,6 +113,11 @@ impl Learner {
     fn counts(&self) -> PyResult<(u64, u64, u64)> {
         let learner = &self.inner.read()?.learner;
         Ok((learner.seed(), learner.babbled(), learner.learnt()))
+    }
+
+    /// Whether percepts are paired with the action of the babble before.
+    fn shuffled(&self) -> PyResult<bool> {
+        Ok(self.inner.read()?.learner.shuffled())
     }
 
     /// Babbles on `task` until `n` more babbles can be learnt from, and learns from them; interrupted,
@@ -299,6 +315,62 @@ pub(crate) fn babble<'py>(
             erased::babble_any(&task.task, n, seed, options, period_s, executor)
         })
         .map_err(errors::agent)?;
+    columns(py, found)
+}
+
+/// The babbles after `babbled` ones of a seed until `n` more can be learnt from: what these leave behind
+/// as from `babble`, and babbles made and learnt from after them.
+#[pyfunction]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "one more than allowed, for Python's lock"
+)]
+pub(crate) fn learnable_babbles<'py>(
+    py: Python<'py>,
+    task: &Task,
+    n: usize,
+    seed: u64,
+    babbled: u64,
+    learnt: u64,
+    period_s: Option<f64>,
+    threads: usize,
+) -> PyResult<(Bound<'py, PyDict>, u64, u64)> {
+    let (found, [babbled, learnt]) = py
+        .detach(|| {
+            let executor = &mut signals::executor(threads)?;
+            erased::learnable_any(&task.task, n, seed, [babbled, learnt], period_s, executor)
+        })
+        .map_err(errors::agent)?;
+    Ok((columns(py, found)?, babbled, learnt))
+}
+
+/// Babbles in grasping from number `first` of a seed on, to postures (n, 6) of the arm: shoulder and
+/// elbow of three postures, as shares of their ranges. Three experiences of each babble, as from `babble`.
+#[pyfunction]
+pub(crate) fn babble_to<'py>(
+    py: Python<'py>,
+    task: &Task,
+    seed: u64,
+    first: u64,
+    postures: PyReadonlyArray2<'py, f64>,
+    threads: usize,
+) -> PyResult<Bound<'py, PyDict>> {
+    let postures: Vec<[f64; 6]> = convert::rows(&postures, "postures")?;
+    let postures: Vec<_> = postures
+        .into_iter()
+        .map(|[a, b, c, d, e, f]| [[a, b], [c, d], [e, f]])
+        .collect();
+    let found = py
+        .detach(|| {
+            let executor = &mut signals::executor(threads)?;
+            erased::babble_to(&task.task, seed, first, &postures, executor)
+        })
+        .map_err(errors::agent)?;
+    columns(py, found)
+}
+
+/// Experiences as arrays by name.
+fn columns(py: Python<'_>, found: erased::Experiences) -> PyResult<Bound<'_, PyDict>> {
     let rows = found.learnable.len();
     let kinds = ["percepts", "actions", "case"].map(|name| (name, PyDict::new(py)));
     for column in found.columns {

@@ -15,6 +15,7 @@ mod policy;
 mod reach;
 mod signals;
 mod task;
+mod tensors;
 
 use pyo3::prelude::*;
 
@@ -36,13 +37,15 @@ mod _core {
     #[pymodule_export]
     use crate::grasp::{grasp_posture, hold};
     #[pymodule_export]
-    use crate::learner::{Learner, babble, babble_steps, brain_json};
+    use crate::learner::{Learner, babble, babble_steps, babble_to, brain_json, learnable_babbles};
     #[pymodule_export]
-    use crate::policy::{Plans, Reference};
+    use crate::policy::{Plans, Reference, act_on, check_deciding};
     #[pymodule_export]
     use crate::reach::{movement, place, posture_at};
     #[pymodule_export]
     use crate::task::{Task, check_fixed, registry_json};
+    #[pymodule_export]
+    use crate::tensors::{read_tensors, tensor_keys, write_tensors};
     use pyo3::prelude::*;
 
     #[pymodule_init]

@@ -1,6 +1,9 @@
 //! Agents that act: plans under way, and those that need no learning.
 
-use babble_agent::{Plan, Policy, Random, predict, reference};
+use std::sync::OnceLock;
+
+use babble_agent::erased::deciding;
+use babble_agent::{AgentError, Decisions, Plan, Policy, Random, predict, reference};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 
@@ -78,7 +81,51 @@ pub(crate) fn decide<'py>(
     convert::table(py, width, decided.iter().map(Vec::as_slice))
 }
 
-/// An agent that needs no learning, by name: "random", "scripted" or "oracle".
+/// Actions (n, k) on decisions that `decide` makes for the flat senses (m, k) of the environments that
+/// begin an episode, and the plans for the next call.
+#[pyfunction]
+pub(crate) fn act_on<'py>(
+    py: Python<'py>,
+    task: &Task,
+    decide: Py<PyAny>,
+    senses: PyReadonlyArray2<'py, f32>,
+    starts: Vec<bool>,
+    plans: Option<&Plans>,
+) -> PyResult<(Bound<'py, PyArray2<f32>>, Plans)> {
+    let raised = OnceLock::new();
+    let width = senses.as_array().shape()[1];
+    let asked = |senses: &[f32]| {
+        Python::attach(|py| ask(decide.bind(py), senses, width)).map_err(|error| {
+            let problem = "it raised an exception".to_owned();
+            raised.get_or_init(|| error);
+            AgentError::Config {
+                field: "decide",
+                problem,
+            }
+        })
+    };
+    let policy = deciding(&task.task, Decisions(&asked)).map_err(errors::agent)?;
+    let acted = act(py, &*policy, &senses, &starts, plans, 1);
+    drop(policy);
+    acted.map_err(|error| raised.into_inner().unwrap_or(error))
+}
+
+/// Checks that decisions can be acted on in a task.
+#[pyfunction]
+pub(crate) fn check_deciding(task: &Task) -> PyResult<()> {
+    let none = |_: &[f32]| Ok(Vec::new());
+    let policy = deciding(&task.task, Decisions(&none));
+    policy.map(|_| ()).map_err(errors::agent)
+}
+
+/// What a function of Python decides for flat senses of that width.
+fn ask(decide: &Bound<'_, PyAny>, senses: &[f32], width: usize) -> PyResult<Vec<f64>> {
+    let rows = PyArray1::from_slice(decide.py(), senses).reshape([senses.len() / width, width])?;
+    let decided: PyReadonlyArray2<'_, f64> = decide.call1((rows,))?.extract()?;
+    Ok(decided.as_array().iter().copied().collect())
+}
+
+/// An agent that needs no learning, by name: "random", "scripted", "oracle" or "reflex".
 #[pyclass(frozen, module = "gym_babble._core")]
 #[derive(Debug)]
 pub(crate) struct Reference {

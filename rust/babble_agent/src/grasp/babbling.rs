@@ -1,14 +1,14 @@
 //! Babbling with the object in the hand: the enclosure reflex closes the hand, the arm moves.
 
 use babble_env::tasks::grasp::{FOVEA_NEURONS, InHand};
-use babble_env::{EnvError, GraspTask, Outcome, Stream};
+use babble_env::{EnvError, GraspTask, Outcome, Purpose, Stream};
 
 use crate::babbling::{Babble, Column, ColumnKind};
 
 /// Time that the reflex closes the hand before the arm moves \[s\]; 2 \[C\].
 const CLOSING_S: f64 = 2.0;
 /// Random postures that the arm is given, one after the other; 3 \[C\].
-const POSTURES: usize = 3;
+pub const POSTURES: usize = 3;
 /// Time that the arm moves to each of them \[s\]; 2 \[C\], in which it makes 86 % of its way.
 const MOVING_S: f64 = 2.0;
 /// Time that one babble takes \[s\].
@@ -60,31 +60,9 @@ impl Babble for GraspTask {
         stream: &mut Stream,
         all: bool,
     ) -> Result<Vec<Experience>, EnvError> {
-        let diameter = self.draw_diameter(stream);
-        let mut object = InHand::draw(self, diameter, stream)?;
-        object.carry(self, object.start(), CLOSING_S);
-        let step_s = self.config.grasp.physics_step_s();
-        let steps = |seconds: f64| (seconds / step_s).round().max(1.0);
-        let moving = steps(MOVING_S);
-        let period = period_s.map_or(f64::INFINITY, steps);
-        let mut experiences = Vec::new();
-        for _ in 0..POSTURES {
-            let to = self.draw_free_posture(diameter / 2.0, stream)?;
-            let mut left = moving;
-            while left >= period {
-                object.carry(self, to, period * step_s);
-                experiences.push(experience(self, &object, diameter));
-                left -= period;
-            }
-            object.carry(self, to, left * step_s);
-        }
-        if period_s.is_none() {
-            experiences.push(experience(self, &object, diameter));
-        }
-        if object.is_held(self) {
-            let kept = |one: &mut Experience| one.outcome = Outcome::Success;
-            experiences.iter_mut().for_each(kept);
-        }
+        let mut experiences = carried(self, period_s, stream, |_, radius, stream| {
+            self.draw_free_posture(radius, stream)
+        })?;
         experiences.retain(|one| all || one.is_kept());
         Ok(experiences)
     }
@@ -95,6 +73,14 @@ impl Babble for GraspTask {
 
     fn is_learnable(experience: &Experience) -> bool {
         experience.is_kept()
+    }
+
+    fn with_action_of(experience: &Experience, other: &Experience) -> Experience {
+        Experience {
+            arm: other.arm,
+            hand: other.hand,
+            ..experience.clone()
+        }
     }
 
     fn outcome(experience: &Experience) -> Outcome {
@@ -110,6 +96,58 @@ impl Babble for GraspTask {
             Column::of("diameter", ColumnKind::Case, all, |e| [e.diameter as f32]),
         ]
     }
+}
+
+/// Babbles to postures of the arm that somebody chooses, shares of its joint ranges, with an experience
+/// at the end of each movement. All else is as in babble `index` of the seed.
+///
+/// # Errors
+/// An error of the task.
+pub fn babble_to(
+    task: &GraspTask,
+    seed: u64,
+    index: u64,
+    postures: &[[f64; 2]; POSTURES],
+) -> Result<Vec<Experience>, EnvError> {
+    let mut stream = Stream::new(Purpose::Learning, seed, index);
+    carried(task, Some(MOVING_S), &mut stream, |i, _, _| {
+        Ok(task.arm.denormalised(postures[i]))
+    })
+}
+
+/// One babble to postures that `choose` gives for their number and the object's radius, with an
+/// experience at its end or every `period_s` seconds.
+fn carried(
+    task: &GraspTask,
+    period_s: Option<f64>,
+    stream: &mut Stream,
+    choose: impl Fn(usize, f64, &mut Stream) -> Result<[f64; 2], EnvError>,
+) -> Result<Vec<Experience>, EnvError> {
+    let diameter = task.draw_diameter(stream);
+    let mut object = InHand::draw(task, diameter, stream)?;
+    object.carry(task, object.start(), CLOSING_S);
+    let step_s = task.config.grasp.physics_step_s();
+    let steps = |seconds: f64| (seconds / step_s).round().max(1.0);
+    let period = period_s.map_or(f64::INFINITY, steps);
+    let mut experiences = Vec::new();
+    for i in 0..POSTURES {
+        let to = choose(i, diameter / 2.0, stream)?;
+        let mut left = steps(MOVING_S);
+        while left >= period {
+            object.carry(task, to, period * step_s);
+            experiences.push(experience(task, &object, diameter));
+            left -= period;
+        }
+        object.carry(task, to, left * step_s);
+    }
+    if period_s.is_none() {
+        experiences.push(experience(task, &object, diameter));
+    }
+    if object.is_held(task) {
+        let kept = |one: &mut Experience| one.outcome = Outcome::Success;
+        experiences.iter_mut().for_each(kept);
+    }
+    Ok(experiences)
 }
 
 /// What is seen and felt now. Whether the object is kept shows at the end of the babble.

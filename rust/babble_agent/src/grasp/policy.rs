@@ -7,7 +7,7 @@ use babble_env::tasks::grasp::{SENSES, at};
 use babble_env::{Control, Executor, GraspTask, Task};
 
 use crate::error::AgentError;
-use crate::policy::{Grasp, Plan, Policy, Random};
+use crate::policy::{Decisions, Grasp, Plan, Policy, Random};
 
 /// Where shoulder, elbow, thumb and finger stand in a flat observation.
 const POSTURE: [usize; 4] = [at::ARM, at::ARM + 1, at::HAND, at::HAND + 1];
@@ -15,6 +15,8 @@ const POSTURE: [usize; 4] = [at::ARM, at::ARM + 1, at::HAND, at::HAND + 1];
 /// What an agent sees at the beginning of an episode.
 #[derive(Debug, Clone, Copy)]
 pub struct Sight<'a> {
+    /// The whole flat observation.
+    pub senses: &'a [f32; SENSES],
     /// Pan and tilt on the object, over their ranges.
     pub eye: [f32; 2],
     /// Edges in the fovea.
@@ -30,6 +32,18 @@ pub trait ChooseGrasp: fmt::Debug + Send + Sync {
     /// # Errors
     /// [`AgentError`] for percepts that are no activities.
     fn choose(&self, task: &GraspTask, sight: &Sight<'_>) -> Result<Grasp, AgentError>;
+}
+
+impl<'a> Sight<'a> {
+    /// What a flat observation shows.
+    fn of(senses: &'a [f32; SENSES]) -> Self {
+        Self {
+            senses,
+            eye: [senses[at::EYE], senses[at::EYE + 1]],
+            fovea: &senses[at::FOVEA..at::HAND],
+            posture: POSTURE.map(|at| senses[at]),
+        }
+    }
 }
 
 /// Goes straight to where the palm meets the object, and closes as the reflex does.
@@ -48,6 +62,23 @@ impl ChooseGrasp for Scripted {
         let ranges = task.robot.ranges();
         let middle = [0, 1].map(|i| f64::midpoint(ranges[i][0], ranges[i][1]));
         Ok(Grasp::straight(arm.unwrap_or(middle), task.reflex()))
+    }
+}
+
+/// A random posture of the arm, uniform in its joint ranges, whatever is seen; the hand closes as the
+/// reflex does.
+impl ChooseGrasp for Random {
+    fn choose(&self, task: &GraspTask, _sight: &Sight<'_>) -> Result<Grasp, AgentError> {
+        let mut stream = self.next();
+        let share = [0, 1].map(|_| stream.uniform(0.0, 1.0));
+        Ok(Grasp::straight(task.arm.denormalised(share), task.reflex()))
+    }
+}
+
+impl ChooseGrasp for Decisions<'_> {
+    fn choose(&self, _task: &GraspTask, sight: &Sight<'_>) -> Result<Grasp, AgentError> {
+        let [shoulder, elbow, thumb, finger] = self.of(sight.senses, 1)?[0];
+        Ok(Grasp::straight([shoulder, elbow], [thumb, finger]))
     }
 }
 
@@ -85,14 +116,7 @@ impl<C: ChooseGrasp> GraspPolicy<C> {
     /// The grasp for each flat observation of `senses`.
     fn choose(&self, senses: &[f32], executor: &mut Executor) -> Result<Vec<Grasp>, AgentError> {
         let (all, _) = senses.as_chunks::<SENSES>();
-        let choose = |senses: &[f32; SENSES]| {
-            let sight = Sight {
-                eye: [senses[at::EYE], senses[at::EYE + 1]],
-                fovea: &senses[at::FOVEA..at::HAND],
-                posture: POSTURE.map(|at| senses[at]),
-            };
-            self.choice.choose(&self.task, &sight)
-        };
+        let choose = |senses: &[f32; SENSES]| self.choice.choose(&self.task, &Sight::of(senses));
         if let [one] = all {
             return Ok(vec![choose(one)?]);
         }

@@ -98,6 +98,13 @@ impl Babble for ReachTask {
         experience.is_legal()
     }
 
+    fn with_action_of(experience: &Experience, other: &Experience) -> Experience {
+        Experience {
+            b: other.b,
+            ..*experience
+        }
+    }
+
     fn outcome(experience: &Experience) -> Outcome {
         experience.outcome
     }

@@ -8,7 +8,7 @@ use babble_env::{Control, EnvError, Executor, ReachTask};
 
 use super::reference::{case_from_senses, oracle, plan, scripted};
 use crate::error::AgentError;
-use crate::policy::{Plan, Policy, Random};
+use crate::policy::{Decisions, Plan, Policy, Random};
 
 /// How an agent chooses a movement.
 pub trait ChooseMovement: fmt::Debug + Send + Sync {
@@ -17,6 +17,22 @@ pub trait ChooseMovement: fmt::Debug + Send + Sync {
     /// # Errors
     /// [`AgentError`] for senses that point nowhere.
     fn choose(&self, task: &ReachTask, senses: &[f32; SENSES]) -> Result<[f64; 2], AgentError>;
+
+    /// The same for each of these flat observations.
+    ///
+    /// # Errors
+    /// As [`choose`](Self::choose), or an error of the executor.
+    fn choose_all(
+        &self,
+        task: &ReachTask,
+        all: &[[f32; SENSES]],
+        executor: &mut Executor,
+    ) -> Result<Vec<[f64; 2]>, AgentError> {
+        if let [one] = all {
+            return Ok(vec![self.choose(task, one)?]);
+        }
+        executor.map(0..all.len(), |i, _| self.choose(task, &all[i]))
+    }
 }
 
 /// Bulges towards the shoulder, where the arm folds away from the obstacle.
@@ -45,6 +61,21 @@ impl ChooseMovement for Scripted {
 impl ChooseMovement for Oracle {
     fn choose(&self, task: &ReachTask, senses: &[f32; SENSES]) -> Result<[f64; 2], AgentError> {
         Ok(oracle(task, &case_from_senses(task, senses)?)?)
+    }
+}
+
+impl ChooseMovement for Decisions<'_> {
+    fn choose(&self, _task: &ReachTask, senses: &[f32; SENSES]) -> Result<[f64; 2], AgentError> {
+        Ok(self.of(senses, 1)?[0])
+    }
+
+    fn choose_all(
+        &self,
+        _task: &ReachTask,
+        all: &[[f32; SENSES]],
+        _executor: &mut Executor,
+    ) -> Result<Vec<[f64; 2]>, AgentError> {
+        self.of(all.as_flattened(), all.len())
     }
 }
 
@@ -92,11 +123,7 @@ impl<C: ChooseMovement> ReachPolicy<C> {
         executor: &mut Executor,
     ) -> Result<Vec<[f64; 2]>, AgentError> {
         let (all, _) = senses.as_chunks::<SENSES>();
-        let choose = |senses| self.choice.choose(&self.task, senses);
-        if let [one] = all {
-            return Ok(vec![choose(one)?]);
-        }
-        executor.map(0..all.len(), |i, _| choose(&all[i]))
+        self.choice.choose_all(&self.task, all, executor)
     }
 
     fn begin(&self, senses: &[f32; SENSES], b: [f64; 2]) -> Result<Plan, EnvError> {

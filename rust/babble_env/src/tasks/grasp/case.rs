@@ -14,6 +14,8 @@ use crate::tasks::reach::case::{check_obstacle, obstacle_from, obstacle_value};
 
 /// Least distance from the object to the point that it is to be carried to \[m\].
 const CARRY_M: f64 = 0.05;
+/// Distance within which an object given by a user is at the place meant \[m\].
+const SAME_PLACE_M: f64 = 1e-6;
 
 /// One case of the grasping task.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -97,10 +99,15 @@ impl GraspRequest {
         } else {
             MAX_TRIES
         };
+        let in_hand = self.draw_in_hand(task, stream);
         let mut last = None;
         for _ in 0..tries {
             stop.check()?;
-            let case = self.fill(task, stream);
+            let mut case = self.fill(task, stream);
+            if in_hand {
+                case.start = task.draw_free_posture(case.radius(), stream)?;
+                case.object = task.at_palm(case.start, case.radius());
+            }
             match playable(task, &case, self) {
                 Ok(()) => return Ok(case),
                 Err(error) => last = Some(error),
@@ -114,6 +121,13 @@ impl GraspRequest {
                 problem: last.map_or_else(String::new, |error| error.to_string()),
             }),
         }
+    }
+
+    /// Whether the object is to begin in the hand. A case of which a place is given never does.
+    fn draw_in_hand(&self, task: &GraspTask, stream: &mut Stream) -> bool {
+        let share = task.options.in_hand_starts;
+        let placed = self.start.is_some() || self.object.is_some();
+        share > 0.0 && !placed && stream.uniform(0.0, 1.0) < share
     }
 
     /// Draws what is not given.
@@ -178,12 +192,18 @@ fn check_start(task: &GraspTask, start: [f64; 2]) -> Result<(), EnvError> {
 }
 
 /// Whether arm, object and obstacle are clear of each other at the start. A drawn object can also
-/// be reached: some posture brings the palm to it.
+/// be reached: some posture brings the palm to it. An object in the hand is nearer than others.
 fn playable(task: &GraspTask, case: &GraspCase, request: &GraspRequest) -> Result<(), EnvError> {
     let posture = task.robot.open_hand(case.start);
     let centre = Vector2::from(case.object);
     let gap = task.robot.clearance(posture, &centre.push(0.0)) - case.radius();
-    let least = task.config.grasp.clearance_m;
+    let palm = Vector2::from(task.at_palm(case.start, case.radius()));
+    let in_hand = (centre - palm).norm() <= SAME_PLACE_M;
+    let least = if in_hand {
+        0.0
+    } else {
+        task.config.grasp.clearance_m
+    };
     if gap < least {
         return Err(EnvError::Case {
             what: "object",
@@ -192,7 +212,10 @@ fn playable(task: &GraspTask, case: &GraspCase, request: &GraspRequest) -> Resul
             ),
         });
     }
-    if request.object.is_none() && task.grasp_posture(case.object, case.radius()).is_none() {
+    if !in_hand
+        && request.object.is_none()
+        && task.grasp_posture(case.object, case.radius()).is_none()
+    {
         return Err(EnvError::Case {
             what: "object",
             problem: format!("{:?} m cannot be brought to the palm", case.object),

@@ -63,7 +63,7 @@ const ENVIRONMENTS: [EnvironmentEntry; 4] = [
     },
 ];
 
-const OPTIONS: [OptionSpec; 13] = [
+const OPTIONS: [OptionSpec; 14] = [
     OBS,
     OptionSpec::choice(
         "control",
@@ -101,6 +101,16 @@ const OPTIONS: [OptionSpec; 13] = [
         "enclosure_reflex",
         "The hand closes by reflex from the first touch of the palm on, whatever the action.",
     ),
+    OptionSpec {
+        name: "in_hand_starts",
+        kind: OptionKind::Number {
+            low: 0.0,
+            high: 1.0,
+        },
+        default: OptionDefault::Number(0.0),
+        doc: "Share of the sampled cases that begin with the object at the palm of the open hand, as in \
+              babbling.",
+    },
     max_episode_steps(
         OptionDefault::Derived,
         "Time limit in control steps; 240, or 500 in region \"full\", if not given.",
@@ -203,6 +213,7 @@ fn options(values: &OptionValues) -> Result<GraspOptions, EnvError> {
         goal: values.name("obs") == "goal",
         region,
         enclosure_reflex: values.flag("enclosure_reflex"),
+        in_hand_starts: values.number("in_hand_starts"),
         max_episode_steps: most.unwrap_or(region.max_episode_steps()),
         record: values.flag("record"),
     })

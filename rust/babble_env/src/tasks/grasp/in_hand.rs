@@ -12,9 +12,6 @@ use super::task::GraspTask;
 use crate::error::EnvError;
 use crate::stream::Stream;
 
-/// Gap between the open hand's palm and the object that is put there \[m\]; 1 mm \[C\].
-const GAP_M: f64 = 0.001;
-
 /// A world with an object at the palm, outside of any episode.
 #[derive(Debug, Clone)]
 pub struct InHand {
@@ -31,7 +28,7 @@ impl InHand {
     #[must_use]
     pub fn new(task: &GraspTask, arm: [f64; 2], diameter: f64) -> Self {
         let radius = diameter / 2.0;
-        let object = task.before_palm(arm, radius, GAP_M);
+        let object = task.at_palm(arm, radius);
         let world = task.robot.world(&Setup {
             posture: task.robot.open_hand(arm),
             ball: Ball {

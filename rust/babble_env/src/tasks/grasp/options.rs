@@ -26,7 +26,7 @@ impl Region {
 }
 
 /// The choices a user makes when a grasping environment is made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct GraspOptions {
     /// Meaning of the action; not `pattern`.
     pub control: Control,
@@ -38,6 +38,8 @@ pub struct GraspOptions {
     pub region: Region,
     /// Whether the hand closes by reflex from the first touch of the palm on, whatever the action.
     pub enclosure_reflex: bool,
+    /// Share of the sampled cases that begin with the object at the palm of the open hand.
+    pub in_hand_starts: f64,
     /// Time limit in control steps.
     pub max_episode_steps: u32,
     /// Whether moments are recorded, for pictures.
@@ -52,6 +54,7 @@ impl Default for GraspOptions {
             goal: false,
             region: Region::PalmSide,
             enclosure_reflex: false,
+            in_hand_starts: 0.0,
             max_episode_steps: Region::PalmSide.max_episode_steps(),
             record: false,
         }

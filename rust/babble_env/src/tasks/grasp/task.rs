@@ -15,6 +15,8 @@ use crate::options::{Control, Reward};
 use crate::stream::Stream;
 use crate::task::GoalSpace;
 
+/// Gap between the open hand's palm and the object that is put there \[m\]; 1 mm \[C\].
+const GAP_M: f64 = 0.001;
 /// How often a case is drawn before the config is called impossible.
 pub(super) const MAX_TRIES: u32 = 10_000;
 
@@ -55,6 +57,13 @@ impl GraspTask {
             });
         }
         crate::options::check_max_episode_steps(options.max_episode_steps)?;
+        if !(0.0..=1.0).contains(&options.in_hand_starts) {
+            return Err(EnvError::OutOfBounds {
+                option: "in_hand_starts",
+                value: options.in_hand_starts.to_string(),
+                bound: "in [0, 1]".to_owned(),
+            });
+        }
         check_locks(&config)?;
         Ok(Self {
             robot: Robot::new(&config.body, config.grasp.physics_step_s()),
@@ -138,6 +147,12 @@ impl GraspTask {
     pub fn before_palm(&self, arm: [f64; 2], radius: f64, gap: f64) -> [f64; 2] {
         let pocket = self.pocket_in_forearm(radius) + Vector2::new(0.0, gap);
         self.arm.with_tip(pocket).fingertip(arm).into()
+    }
+
+    /// Centre of a ball that is put into the open hand of the arm in a posture \[rad\].
+    #[must_use]
+    pub fn at_palm(&self, arm: [f64; 2], radius: f64) -> [f64; 2] {
+        self.before_palm(arm, radius, GAP_M)
     }
 
     /// Whether a ball in the hand is clear of the upper arm with the elbow at `elbow` \[rad\].

@@ -181,11 +181,11 @@ ROSTER = {
         in_compare=False,
     ),
     "ppo-in-hand": RosterAgent(
-        title="PPO step by step, half of its starts with the object in the hand",
+        title="PPO step by step, half of the starts in the hand",
         trainer="sb3:ppo",
         tasks={"grasp": Place(GRASP, 2_500_000, (IN_HAND,))},
         sees="all",
-        options={"in_hand_starts": 0.5},
+        settings={"learning_options": {"in_hand_starts": 0.5}},
         in_compare=False,
     ),
     "sac": RosterAgent(

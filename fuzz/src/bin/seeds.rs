@@ -9,7 +9,9 @@ use babble_agent::{
     GraspBrain, GraspNetwork, Learner, Network, ReachBabbling, ReachBrain, ReachNetwork, Variant,
 };
 use babble_env::tasks::grasp::GraspRequest;
-use babble_env::{Autoreset, Batch, Config, EnvError, Task};
+use babble_env::{
+    Autoreset, Batch, Config, EnvError, GraspOptions, GraspTask, ReachOptions, ReachTask, Task,
+};
 use babble_fuzz::snapshots::{body_of, grasping, reaching};
 use safetensors::SafeTensors;
 
@@ -93,7 +95,10 @@ fn agents() -> Result<()> {
         neurons: 2,
         ..GraspBrain::default()
     };
-    agent("grasp", &Learner::<GraspNetwork>::new(brain, &grasp, 1, ())?)
+    agent(
+        "grasp",
+        &Learner::<GraspNetwork>::new(brain, &grasp, 1, ())?,
+    )
 }
 
 /// What is known of an agent beside its weights.

@@ -23,6 +23,7 @@ EXTRAS = {
     "human": ("pygame-ce",),
     "video": ("moviepy",),
     "study": ("jinja2", "scipy"),
+    "ray": ("ray",),
 }
 """The extras, with the packages of each."""
 

@@ -223,6 +223,25 @@ def test_a_few_seeds_are_warned_of(report):
     assert "Scripted: Only" not in report["index.html"]
 
 
+def test_who_is_better_is_one_minus_who_is_worse(report):
+    (task,) = json.loads(report["results.json"])["tasks"]
+    better = task["improvement"]
+    for x, others in better.items():
+        for y, one in others.items():
+            there, back = one["probability"], better[y][x]["probability"]
+            assert there["estimate"] + back["estimate"] == pytest.approx(1.0)
+            if there["low"] is not None:
+                assert there["low"] <= there["estimate"] <= there["high"]
+                assert there["low"] + back["high"] == pytest.approx(1.0)
+    paper = better["hebb-paper"]["random"]["probability"]
+    seeds = {
+        agent["label"]: [run["rates"]["success"]["rate"] for run in agent["runs"]]
+        for agent in task["agents"]
+    }
+    signs = [np.sign(a - b) for a in seeds["hebb-paper"] for b in seeds["random"]]
+    assert paper["estimate"] == pytest.approx((1 + np.mean(signs)) / 2)
+
+
 def test_runs_that_join_stand_beside_the_learners(report, page):
     assert page.row("mine")[:2] == ["mine joined, 2 runs", "2,000 0–2,000"]
     assert "mine: from logs of stable-baselines3" in report["index.html"]

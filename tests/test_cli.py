@@ -342,7 +342,7 @@ def test_doctor(run, run_json):
         (["babble", "--out", "agent", "--movements", "0"], "--movements"),
         (["babble", "--out", "agent", "--task", "fly"], "--task"),
         (["compare", "--agents", "hebb-paper,nobody"], "nobody"),
-        (["compare", "--agents", ""], "hebb-paper"),
+        (["compare", "--agents", ""], "agents[0].agent is empty"),
         (["compare", "--task", "grasp", "--agents", "hebb-conjunctive"], "can do none of grasp"),
         (["compare", "--task", "grasp", "--budget", "0"], "--budget"),
         (["study", "run", "nothing", "--out", "x"], "is not one of"),

@@ -39,7 +39,9 @@ def rllib():
     """The module, with Ray on this machine."""
     ray = pytest.importorskip("ray", reason="only `make frameworks` has Ray")
     pytest.importorskip("ray.rllib")
-    ray.init(num_cpus=2, include_dashboard=False, logging_level="error")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("RAY_worker_niceness", "0")  # A busy machine leaves others no time.
+        ray.init("local", num_cpus=2, include_dashboard=False, logging_level="error")
     yield importlib.import_module("gym_babble.rllib")
     ray.shutdown()
 

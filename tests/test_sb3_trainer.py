@@ -12,7 +12,7 @@ import torch
 from gym_babble import evaluate, scenarios
 from gym_babble.agents.loading import named_agent
 from gym_babble.errors import ConfigError, DivergedError, MissingExtraError
-from gym_babble.study.roster import GENERATORS, REFLEX, ROSTER, trainer_for
+from gym_babble.study.roster import GENERATORS, IN_HAND, REFLEX, ROSTER, trainer_for
 from gym_babble.study.trainers.base import Cost, Order
 from gym_babble.study.trainers.sb3 import SB3Trainer, train_tuned
 
@@ -37,6 +37,20 @@ def made(agent, seed=3, budget=0, **changed):
     return SB3Trainer(
         Order(task=task, seed=seed, budget=budget, settings=settings, **changed), algorithm
     )
+
+
+def of_roster(name, task):
+    row = ROSTER[name]
+    place = row.tasks[task]
+    order = Order(
+        task=task,
+        seed=0,
+        budget=place.budget,
+        env_id=place.env_id,
+        options=dict(row.options),
+        settings=dict(row.settings),
+    )
+    return trainer_for(name, order)
 
 
 def weights(trainer):
@@ -120,8 +134,11 @@ def test_a_linear_schedule_ends_with_the_budget():
 )
 def test_the_rosters_agents_know_what_it_says(name, task):
     place = ROSTER[name].tasks[task]
-    arguments = trainer_for(name, Order(task=task, seed=0, budget=place.budget)).arguments
+    trainer = of_roster(name, task)
+    arguments, (interface,) = trainer.arguments, trainer.agent.env.get_attr("interface", 0)
     assert arguments.task == task
+    assert bool(interface.options.get("in_hand_starts")) == (IN_HAND in place.knows)
+    assert not arguments.option("in_hand_starts")
     assert (arguments.option("control") == "pattern") == (GENERATORS in place.knows)
     assert bool(arguments.option("enclosure_reflex")) == (REFLEX in place.knows)
 
@@ -131,7 +148,7 @@ def test_the_rosters_agents_know_what_it_says(name, task):
     [("ppo-obstacle", ["obstacle"]), ("ppo-eye-obstacle", ["eye", "obstacle"])],
 )
 def test_sees_its_senses_and_no_others(name, senses):
-    trainer = trainer_for(name, Order(task="reach", seed=0, budget=1))
+    trainer = of_roster(name, "reach")
     observation, _ = gym.make("BabbleReachPattern-v0").reset(seed=0)
     action = trainer.agent.predict(observation, deterministic=True)[0]
     for sense, value in observation.items():

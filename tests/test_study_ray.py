@@ -93,6 +93,7 @@ def starts(tmp_path, monkeypatch):
     monkeypatch.setenv("RAY_worker_niceness", "0")
     monkeypatch.setenv("RAY_memory_monitor_refresh_ms", "0")
     monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.chdir(tmp_path)  # Ray's processes look for packages in the driver's folder first.
 
     def read():
         path = tmp_path / "starts"
@@ -196,6 +197,18 @@ def test_a_node_of_another_version_stops_the_study(tmp_path, monkeypatch):
     with pytest.raises(StudyError, match=r"has numpy \d.+ instead of 0\.1: install there"):
         run_study(study, tmp_path / "ray", Silent(), engine="ray")
     assert not any((tmp_path / "ray" / "runs").iterdir())
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_node_without_this_version_stops_the_study(tmp_path, cluster, monkeypatch):
+    older = tmp_path / "older"
+    (older / "gym_babble").mkdir(parents=True)
+    (older / "gym_babble" / "__init__.py").touch()
+    monkeypatch.setenv("PYTHONPATH", str(older))
+    cluster.add_node(num_cpus=4)
+    cluster.wait_for_nodes()
+    with pytest.raises(StudyError, match="a node cannot run this version of gym-babble: Module"):
+        run_study(small(["random"], seeds=6), tmp_path / "ray", Silent(), engine="ray")
 
 
 @pytest.mark.filterwarnings("ignore")

@@ -5,8 +5,9 @@ from __future__ import annotations
 import csv
 import json
 import re
+from html import unescape
 from html.parser import HTMLParser
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ pytest.importorskip("jinja2", reason="the wheel's tests install no extra")
 pytest.importorskip("matplotlib", reason="the wheel's tests install no extra")
 pytest.importorskip("scipy", reason="the wheel's tests install no extra")
 
+from gym_babble.cli import main
 from gym_babble.errors import ConfigError
 from gym_babble.report.charts import learning_charts
 from gym_babble.report.citation import bibtex
@@ -27,6 +29,9 @@ from gym_babble.study.rates import share
 from gym_babble.study.run import execute, runs_of
 from gym_babble.study.spec import study_of
 from gym_babble.study.store import Store
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 HOSTILE = "<script>alert('study & report')</script>"
 SPEC: dict[str, Any] = {
@@ -61,11 +66,26 @@ def store(tmp_path_factory) -> Store:
 
 
 @pytest.fixture(scope="module")
-def report(store, tmp_path_factory) -> dict[str, str]:
-    """The files of the report by name, and `folder`."""
+def logs(tmp_path_factory) -> Path:
+    """The logs of two runs of stable-baselines3, in a folder with a hostile name."""
+    folder = tmp_path_factory.mktemp("logs") / "<a>"
+    for seed in ("a", "b"):
+        (folder / seed).mkdir(parents=True)
+        steps, successes = np.array([0, 10, 100]), np.array([[0, 0], [1, 0], [1, 1]])
+        np.savez(folder / seed / "evaluations.npz", timesteps=steps, successes=successes)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def report(store, logs, tmp_path_factory) -> dict[str, str]:
+    """The files of the report by name, as the command line writes them."""
     folder = tmp_path_factory.mktemp("report")
-    paths = write_report(store, folder, "gym-babble study report <a> --out b")
-    return {path.name: path.read_text(encoding="utf-8") for path in paths}
+    words = ["study", "report", str(store.folder), "--out", str(folder)]
+    words += ["--join", f"reach:mine={logs}", "--steps-per-action", "200"]
+    with pytest.raises(SystemExit) as ended:
+        main(words)
+    assert not ended.value.code
+    return {path.name: path.read_text(encoding="utf-8") for path in folder.iterdir()}
 
 
 class Page(HTMLParser):
@@ -194,12 +214,40 @@ def test_runs_that_failed_or_are_missing_are_rows_that_say_so(report, page):
 def test_names_are_text_and_never_markup(report):
     assert HOSTILE not in report["index.html"]
     assert "&lt;script&gt;alert(" in report["index.html"]
-    assert "report &lt;a&gt; --out b" in report["index.html"]
+    assert "<a>" not in report["index.html"]
+    assert "&lt;a&gt;" in report["index.html"]
 
 
 def test_a_few_seeds_are_warned_of(report):
     assert "Hebb paper, Random: Only 2 seeds" in report["index.html"]
     assert "Scripted: Only" not in report["index.html"]
+
+
+def test_who_is_better_is_one_minus_who_is_worse(report):
+    (task,) = json.loads(report["results.json"])["tasks"]
+    better = task["improvement"]
+    for x, others in better.items():
+        for y, one in others.items():
+            there, back = one["probability"], better[y][x]["probability"]
+            assert there["estimate"] + back["estimate"] == pytest.approx(1.0)
+            if there["low"] is not None:
+                assert there["low"] <= there["estimate"] <= there["high"]
+                assert there["low"] + back["high"] == pytest.approx(1.0)
+    paper = better["hebb-paper"]["random"]["probability"]
+    seeds = {
+        agent["label"]: [run["rates"]["success"]["rate"] for run in agent["runs"]]
+        for agent in task["agents"]
+    }
+    signs = [np.sign(a - b) for a in seeds["hebb-paper"] for b in seeds["random"]]
+    assert paper["estimate"] == pytest.approx((1 + np.mean(signs)) / 2)
+
+
+def test_runs_that_join_stand_beside_the_learners(report, page):
+    assert page.row("mine")[:2] == ["mine joined, 2 runs", "2,000 0–2,000"]
+    assert "mine: from logs of stable-baselines3" in report["index.html"]
+    assert {row["axis"] for row in table(report["curves.csv"]) if row["label"] == "mine"} == {
+        "control_steps"
+    }
 
 
 def test_budgets_that_were_not_reached_are_bounds(report):
@@ -209,13 +257,9 @@ def test_budgets_that_were_not_reached_are_bounds(report):
             assert float(row["after"]) > 0
 
 
-def test_each_learner_is_the_reference_of_ratios_in_control_steps(store, tmp_path):
+def test_each_learner_is_the_reference_of_ratios_in_control_steps(store, logs):
     (task,) = tasks_of(store)
-    for seed in ("a", "b"):
-        (tmp_path / seed).mkdir()
-        steps, successes = np.array([0, 10, 100]), np.array([[0, 0], [1, 0], [1, 1]])
-        np.savez(tmp_path / seed / "evaluations.npz", timesteps=steps, successes=successes)
-    joined = read_joined(f"reach:mine={tmp_path}", store.study(), steps_per_action=200)
+    joined = read_joined(f"reach:mine={logs}", store.study(), steps_per_action=200)
     assert joined.names == ("a", "b")
     assert joined.runs == [([2_000.0, 20_000.0], [0.5, 1.0])] * 2
     numbers = task_numbers(task, [joined])
@@ -245,12 +289,14 @@ def test_what_cannot_join_is_named(store, given, said):
         read_joined(given, store.study())
 
 
-def test_the_same_store_is_the_same_report(store, report, tmp_path):
+def test_the_same_store_and_logs_are_the_same_report(store, logs, report, tmp_path):
     # An earlier report of a study with another task leaves nothing behind.
     (tmp_path / "results.json").write_text('{"files": ["old.svg", "../x.svg"]}', encoding="utf-8")
     for name in ("old.svg", "mine.svg"):
         (tmp_path / name).write_text("<svg/>", encoding="utf-8")
-    write_report(store, tmp_path, "gym-babble study report <a> --out b")
+    (command,) = re.findall(r"<pre>(gym-babble study report .*)</pre>", report["index.html"])
+    joined = [read_joined(f"reach:mine={logs}", store.study(), 200)]
+    write_report(store, tmp_path, unescape(command), joined)
     written = {path.name: path.read_text(encoding="utf-8") for path in tmp_path.iterdir()}
     assert written.pop("mine.svg")
     assert written == report

@@ -66,7 +66,7 @@ class RewardHebb(Learning):
         env: EnvLike = "BabbleReachPattern-v0",
         *,
         eta: float = 1.0,
-        noise: float = 0.2,
+        noise: float = 0.3,
         seed: int = 0,
     ) -> None:
         settings = {

@@ -160,7 +160,8 @@ def report(
     """Write a study as a page, with its numbers as JSON and CSV and its charts as SVG."""
     check_folder(out, "--out", REPORT_FILES)
     store = Store(folder)
-    joined = [read_joined(one, store.study(), steps_per_action) for one in join or ()]
+    found = store.study()
+    joined = [read_joined(one, found, steps_per_action) for one in join or ()]
     words = ["gym-babble", "study", "report", str(folder), "--out", str(out)]
     for one in join or ():
         words += ["--join", one]

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
-from itertools import combinations, permutations
+from dataclasses import asdict, replace
+from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gym_babble.study.statistics import profile
+from gym_babble.study.statistics import Interval, profile
 from gym_babble.study.two_agents import improvement, mcnemar
 
 if TYPE_CHECKING:
@@ -29,12 +29,24 @@ def profile_numbers(agents: Sequence[AgentRuns]) -> dict[str, dict[str, Any]]:
 
 
 def improvement_numbers(agents: Sequence[AgentRuns]) -> dict[str, dict[str, Any]]:
-    """For each agent X and each other Y: the probability that a seed of X succeeds more often."""
+    """For each agent X and each other Y: the probability that a seed of X succeeds more often.
+
+    It is computed once for each two agents, and mirrored for the other order.
+    """
     found: dict[str, dict[str, Any]] = {agent.spec.label: {} for agent in agents}
-    for x, y in permutations(agents, 2):
+    for x, y in combinations(agents, 2):
         better = improvement(x.happened("success"), y.happened("success"))
         found[x.spec.label][y.spec.label] = asdict(better)
+        mirrored = replace(better, probability=_mirrored(better.probability))
+        found[y.spec.label][x.spec.label] = asdict(mirrored)
     return found
+
+
+def _mirrored(of: Interval) -> Interval:
+    """The interval of the opposite event's probability."""
+    if of.low is None or of.high is None:
+        return Interval(1 - of.estimate, None, None)
+    return Interval(1 - of.estimate, 1 - of.high, 1 - of.low)
 
 
 def mcnemar_numbers(agents: Sequence[AgentRuns]) -> list[dict[str, Any]]:

@@ -27,7 +27,8 @@ def sections_of(task: TaskRuns) -> Iterator[dict[str, Any]]:
         yield {
             "title": "The same cases, all agents",
             "text": f"The first {len(charts)} test cases with the way of the hand of each agent's "
-            "first seed. Thick: success; thin, up to a red cross: failure. Grey: the obstacle.",
+            "first seed. Thick: success; thin, up to a red cross: failure. "
+            f"{'Grey: the obstacle.' if task.spec.task == 'reach' else 'Red: the object.'}",
             "legend": True,
             "panels": charts,
             "broad": [],

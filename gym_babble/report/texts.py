@@ -87,15 +87,17 @@ def lead(tasks: Sequence[dict[str, Any]]) -> str:
 
 
 def _best(task: dict[str, Any]) -> str:
-    """Who succeeds most often on a task: of those that learn, and of the others."""
-    paper = f", the paper {share(task['paper']['success'])}" if task["paper"] else ""
+    """Success on a task: of the three best agents that learn, or of all if none does."""
     learners = [agent for agent in task["agents"] if agent["curve"]]
     ranked = sorted(
         learners or task["agents"], key=lambda agent: -agent["success"]["iqm"]["estimate"]
     )
-    named = ", ".join(f"{agent['title']} {_with_interval(agent)}" for agent in ranked[:3])
-    who = "the agents that learn" if learners else "the agents"
-    return f"{HEADINGS[task['task']]}: of {who}, {named} succeed most often{paper}."
+    who = "agents that learn" if learners else "agents"
+    whose = f"the best three of {len(ranked)} {who}" if len(ranked) > 3 else f"the {who}"
+    named = [f"{agent['title']} {_with_interval(agent)}" for agent in ranked[:3]]
+    if task["paper"]:
+        named.append(f"the paper {share(task['paper']['success'])}")
+    return f"{HEADINGS[task['task']]}, success of {whose}: {'; '.join(named)}."
 
 
 def _with_interval(agent: dict[str, Any]) -> str:

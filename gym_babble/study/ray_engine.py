@@ -79,9 +79,10 @@ def run_on_ray(
 
 def what_decides() -> dict[str, str | None]:
     """All that the result of a run depends on, besides its spec: versions, code and physics."""
-    pictures = {name for extra in ("figures", "human", "video") for name in EXTRAS[extra]}
-    found = {name: value for name, value in versions().items() if name not in pictures}
-    return {**found, "code": code_hash(), "physics": physics_hash()}
+    names = ("gym-babble", "python", "gymnasium", "numpy", *EXTRAS["sb3"])
+    found = versions()
+    decisive = {name: found[name] for name in names}
+    return {**decisive, "code": code_hash(), "physics": physics_hash()}
 
 
 def execute_there(

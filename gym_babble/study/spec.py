@@ -196,6 +196,8 @@ def _agent(path: str, value: Any, tasks: Mapping[str, StudyTask]) -> StudyAgent:
     table: dict[str, Any] = {"agent": value} if isinstance(value, str) else _table(path, value)
     _check_fields(path, table, _names(StudyAgent), ("agent",))
     agent = check_text(f"{path}.agent", table["agent"])
+    if not agent:
+        raise ConfigError(f"{path}.agent is empty: it is a name, a file, or module:Class")
     table["label"] = _name(f"{path}.label", table.get("label") or _label(agent))
     if "seeds" in table:
         table["seeds"] = _seeds(f"{path}.seeds", table["seeds"]) if table["seeds"] else ()

@@ -15,7 +15,7 @@ from gym_babble._core import __version__
 from gym_babble.checks import processors
 from gym_babble.envs import BabbleGraspEnv, BabbleReachEnv
 
-__all__ = ["EXTRAS", "code_hash", "machine", "physics_hash", "state_hash", "versions"]
+__all__ = ["EXTRAS", "code_hash", "machine", "physics_hash", "versions"]
 
 EXTRAS = {
     "sb3": ("stable-baselines3", "torch"),
@@ -23,6 +23,7 @@ EXTRAS = {
     "human": ("pygame-ce",),
     "video": ("moviepy",),
     "study": ("jinja2", "scipy"),
+    "ray": ("ray",),
 }
 """The extras, with the packages of each."""
 
@@ -61,23 +62,22 @@ def _processor() -> str:
     return str(names[0]) if names else platform.processor()
 
 
-def state_hash() -> int:
-    """Hash of both tasks' states after 20 steps of seed 0; the same on every machine."""
-    digest = blake2b(digest_size=8)
-    for env in (BabbleReachEnv(), BabbleGraspEnv(control="posture")):
-        env.reset(seed=0)
-        width = len(env.action_space.sample())
-        for step in range(20):
-            action = np.array([0.1 * (step % 7) - 0.3, *[0.25] * (width - 1)], np.float32)
-            env.step(action)
-        digest.update(env.state_hash().to_bytes(8, "little"))
-    return int.from_bytes(digest.digest(), "little")
-
-
 @cache
 def physics_hash() -> str:
-    """`state_hash` in hexadecimal: the same for the same physics."""
-    return f"{state_hash():016x}"
+    """Hash of what both tasks show in 20 steps of seed 0: the same for the same physics.
+
+    It is the same on every machine, and does not depend on the form of snapshots.
+    """
+    digest = blake2b(digest_size=8)
+    for env in (BabbleReachEnv(obs="flat"), BabbleGraspEnv(obs="flat", control="posture")):
+        shown, _ = env.reset(seed=0)
+        action = np.full_like(env.action_space.sample(), 0.25)
+        for step in range(20):
+            digest.update(shown.astype("<f4").tobytes())
+            action[0] = 0.1 * (step % 7) - 0.3
+            shown, reward, *_ = env.step(action)
+            digest.update(np.array(reward, "<f8").tobytes())
+    return digest.hexdigest()
 
 
 @cache

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from gym_babble.paper.table2 import PAPER_TABLE_II
 from gym_babble.study.rates import paper_tally, share
+from gym_babble.study.roster import ROSTER
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -313,6 +314,18 @@ def _grasping_row(title: str, cells: list[str], found: dict[str, Any], key: str)
     return [title, *cells, *split, *rest]
 
 
+def roster(_: Stores) -> str:
+    """The agents that a study can name."""
+    rows = []
+    for name, agent in ROSTER.items():
+        for task, place in agent.tasks.items():
+            budget = f"{place.budget:,}" if place.budget else "–"
+            knows = ", ".join(place.knows) or "–"
+            rows.append([f"`{name}`", agent.title, task, place.sees, knows, budget])
+    heads = ["name", "agent", "task", "sees", "knows beforehand", "control steps"]
+    return markdown(heads, rows)
+
+
 def solved(stores: Stores) -> str:
     """What the scripted agent and the oracle solve of the default cases."""
     rows = [
@@ -349,7 +362,18 @@ BLOCKS: dict[str, Callable[[Stores], str]] = {
     block.__name__: block
     for block in (
         *(table1_short, table1, fig4, sensitivity, vote, table2_short, table2, hands, holding),
-        *(sizes, engines, sides, interference, periods, ppo_reach, grasping, solved, tuning),
+        *(
+            sizes,
+            engines,
+            sides,
+            interference,
+            periods,
+            ppo_reach,
+            grasping,
+            solved,
+            tuning,
+            roster,
+        ),
     )
 }
 """The tables by name."""

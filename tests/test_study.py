@@ -262,6 +262,11 @@ def test_a_store_of_another_version_or_study_is_refused(tmp_path):
     path.write_text(json.dumps(record | {"format": 9}), encoding="utf-8")
     with pytest.raises(StudyError, match=r"format = 9, and this version reads 1"):
         store.runs()
+    cut = {name: record[name] for name in ("format", "spec")}
+    path.with_name("x.json").write_text(json.dumps(cut), encoding="utf-8")
+    with pytest.raises(StudyError, match=r"x\.json: not a run of a study: 'physics'"):
+        store.unfit(runs_of(store.study()))
+    path.with_name("x.json").unlink()
     path.write_text('{"format": 1', encoding="utf-8")
     with pytest.raises(StudyError, match="not a file of a study"):
         run(only_reaching("random"), tmp_path)

@@ -21,6 +21,8 @@ NEVER_IMPORTED = {
     "code", "ctypes", "dill", "ftplib", "http", "joblib", "marshal", "pickle", "requests", "runpy",
     "shelve", "socket", "subprocess", "urllib", "yaml",
 }  # fmt: skip
+# Studies start a Python for each run, and read settings of rl-zoo3, with `safe_load` alone.
+EXCEPT = {"study/engine.py": {"subprocess"}, "study/tuned/__init__.py": {"yaml"}}
 NEVER_CALLED = {"__import__", "compile", "eval", "exec"}
 NEVER_OF_OS = re.compile(r"system|popen|startfile|(exec|posix_spawn|spawn)\w+")
 # Rust has no eval; this is its network and its programs.
@@ -28,8 +30,10 @@ NEVER_IN_RUST = re.compile(r"\b(net|process::Command|Command::new|libloading)\b"
 
 
 def sources(repository):
-    for path in sorted((repository / "gym_babble").rglob("*.py")):
-        yield path.name, ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+    package = repository / "gym_babble"
+    for path in sorted(package.rglob("*.py")):
+        name = path.relative_to(package).as_posix()
+        yield name, ast.walk(ast.parse(path.read_text(encoding="utf-8")))
 
 
 def imported(node):
@@ -43,11 +47,13 @@ def imported(node):
 def test_nothing_of_ours_unpickles_evaluates_or_reaches_the_network(repository):
     for name, nodes in sources(repository):
         for node in nodes:
-            assert not imported(node) & NEVER_IMPORTED, name
+            assert not imported(node) & NEVER_IMPORTED - EXCEPT.get(name, set()), name
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
                 assert node.func.id not in NEVER_CALLED, name
             if isinstance(node, ast.Attribute) and ast.unparse(node.value) == "os":
                 assert not NEVER_OF_OS.fullmatch(node.attr), name
+            if isinstance(node, ast.Attribute) and ast.unparse(node.value) == "yaml":
+                assert node.attr == "safe_load", name
     for path in (repository / "rust").glob("*/src/**/*.rs"):
         code = re.sub(r"//.*", "", path.read_text(encoding="utf-8"))
         assert not NEVER_IN_RUST.search(code), path

@@ -41,7 +41,7 @@ class AgentRuns:
     @property
     def title(self) -> tuple[str, str]:
         """Its title, and a detail."""
-        return title_of(self.spec)
+        return title_of(self.spec, self.task)
 
     @property
     def entry(self) -> RosterAgent | None:

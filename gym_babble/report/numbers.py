@@ -63,7 +63,7 @@ def absent_numbers(run: StoredRun) -> dict[str, Any]:
     """A run that has not run, or failed."""
     return {
         "label": run.spec.agent.label,
-        "title": title_of(run.spec.agent)[0],
+        "title": title_of(run.spec.agent, run.spec.task.task)[0],
         "task": run.spec.task_name,
         "seed": run.spec.seed,
         "status": "missing" if run.record is None else "failed",
@@ -93,7 +93,7 @@ def _agent(task: TaskRuns, agent: AgentRuns) -> dict[str, Any]:
         "detail": detail,
         "series": agent.series,
         "knows": None if place is None else list(place.knows),
-        "sees": None if agent.entry is None else agent.entry.sees,
+        "sees": None if place is None else place.sees,
         "env": agent.records[0]["env"],
         "options": agent.spec.options,
         "settings": agent.spec.settings,

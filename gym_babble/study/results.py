@@ -75,7 +75,7 @@ def _agent_json(task: Task, runs: Sequence[StoredRun]) -> dict[str, Any]:
     costs = [record["cost"] for record in records]
     known = [name for name in (costs[0] if costs else {}) if costs[0][name] is not None]
     return {
-        "title": title_of(runs[0].spec.agent)[0],
+        "title": title_of(runs[0].spec.agent, task.name)[0],
         "env": records[0]["env"] if records else None,
         "budget": runs[0].spec.budget,
         "test": {**over_seeds(tallies, task.rates), "by_size": sizes} if tallies else None,
@@ -99,12 +99,14 @@ def by_agent(runs: Sequence[StoredRun], task_name: str) -> dict[str, list[Stored
     return found
 
 
-def title_of(agent: StudyAgent) -> tuple[str, str]:
-    """Title of an agent, and its label or where it comes from."""
+def title_of(agent: StudyAgent, task: str) -> tuple[str, str]:
+    """Title of an agent, and what it sees in a task, or its name where it has another label."""
     entry = ROSTER.get(agent.agent)
     if entry is None:
         return agent.label, agent.agent
-    return (entry.title, entry.sees) if agent.label == agent.agent else (agent.label, entry.title)
+    if agent.label != agent.agent:
+        return agent.label, entry.title
+    return entry.title, entry.tasks[task].sees
 
 
 def task_table(study: Study, runs: Sequence[StoredRun], task_name: str) -> Table:
@@ -149,7 +151,7 @@ def _add_rows(table: Table, runs: Sequence[StoredRun]) -> None:
         steps = f"{_mean(costs, 'control_steps') / 1e6:.1f}"
         cpu = _mean(costs, "cpu_seconds")
         cells = [stacked(trials, learnt), steps, f"{cpu:.1f}" if cpu < 10 else f"{cpu:.0f}"]
-    name = stacked(*title_of(runs[0].spec.agent), "bold")
+    name = stacked(*title_of(runs[0].spec.agent, task.name), "bold")
     table.add_row(name, *rate_cells(rows[0].rates, task), *cells)
     for row in rows[1:]:
         table.add_row(f"  {row.title}", *rate_cells(row.rates, task))

@@ -43,6 +43,8 @@ class Place(NamedTuple):
     env_id: str
     budget: int
     """Control steps to learn from; 0 if it does not learn."""
+    sees: str
+    """What it decides from."""
     knows: tuple[str, ...] = ()
     """What it knows or has before it learns."""
 
@@ -57,8 +59,6 @@ class RosterAgent:
     `Order`."""
     tasks: Mapping[str, Place]
     """The tasks that it can do."""
-    sees: str
-    """What it decides from."""
     options: Mapping[str, Any] = field(default_factory=dict)
     settings: Mapping[str, Any] = field(default_factory=dict)
     seeded: bool = True
@@ -87,142 +87,127 @@ ROSTER = {
         title="Hebb paper",
         trainer="babbling:hebb",
         tasks={
-            "reach": Place(PATTERN, 24_400_000, (GENERATORS,)),
-            "grasp": Place(GRASP, 160_000, (REFLEX, IN_HAND)),
+            "reach": Place(PATTERN, 24_400_000, "obstacle", (GENERATORS,)),
+            "grasp": Place(GRASP, 160_000, "eye and fovea", (REFLEX, IN_HAND)),
         },
-        sees="obstacle; eye and fovea",
     ),
     "hebb-conjunctive": RosterAgent(
         title="Hebb conjunctive",
         trainer="babbling:hebb",
-        tasks={"reach": Place(PATTERN, 24_400_000, (GENERATORS,))},
-        sees="obstacle × eye",
+        tasks={"reach": Place(PATTERN, 24_400_000, "obstacle × eye", (GENERATORS,))},
         settings={"variant": "conjunctive"},
     ),
     "nearest-neighbour": RosterAgent(
         title="Nearest neighbours",
         trainer="babbling:nearest_neighbours",
         tasks={
-            "reach": Place(PATTERN, 24_400_000, (GENERATORS,)),
-            "grasp": Place(GRASP, 160_000, (REFLEX, IN_HAND)),
+            "reach": Place(PATTERN, 24_400_000, "obstacle × eye", (GENERATORS,)),
+            "grasp": Place(GRASP, 160_000, "eye and fovea", (REFLEX, IN_HAND)),
         },
-        sees="obstacle × eye; eye and fovea",
         in_compare=False,
     ),
     "goal-babbling": RosterAgent(
         title="Goal babbling",
         trainer="babbling:goal_babbling",
         tasks={
-            "reach": Place(PATTERN, 24_400_000, (GENERATORS,)),
-            "grasp": Place(GRASP, 160_000, (REFLEX, IN_HAND)),
+            "reach": Place(PATTERN, 24_400_000, "obstacle × eye", (GENERATORS,)),
+            "grasp": Place(GRASP, 160_000, "eye", (REFLEX, IN_HAND)),
         },
-        sees="obstacle × eye; eye",
         in_compare=False,
     ),
     "reward-hebb": RosterAgent(
         title="Reward-modulated Hebb",
         trainer="babbling:reward_hebb",
-        tasks={"reach": Place(PATTERN, 24_400_000, (GENERATORS,))},
-        sees="obstacle × eye",
+        tasks={"reach": Place(PATTERN, 24_400_000, "obstacle × eye", (GENERATORS,))},
         in_compare=False,
     ),
     "shuffled-pairs": RosterAgent(
         title="Hebb, shuffled pairs",
         trainer="babbling:hebb",
         tasks={
-            "reach": Place(PATTERN, 24_400_000, (GENERATORS,)),
-            "grasp": Place(GRASP, 160_000, (REFLEX, IN_HAND)),
+            "reach": Place(PATTERN, 24_400_000, "obstacle", (GENERATORS,)),
+            "grasp": Place(GRASP, 160_000, "eye and fovea", (REFLEX, IN_HAND)),
         },
-        sees="obstacle; eye and fovea",
         settings={"shuffled": True},
         in_compare=False,
     ),
     "reflex-only": RosterAgent(
         title="Reflex only",
         trainer="still:reference",
-        tasks={"grasp": Place(GRASP, 0, (REFLEX,))},
-        sees="touch",
+        tasks={"grasp": Place(GRASP, 0, "touch", (REFLEX,))},
         settings={"name": "reflex-only"},
         in_compare=False,
     ),
     "ppo": RosterAgent(
         title="PPO step by step",
         trainer="sb3:ppo",
-        tasks={"reach": Place(REACH, 1_000_000), "grasp": Place(GRASP, 2_500_000)},
-        sees="all",
+        tasks={"reach": Place(REACH, 1_000_000, "all"), "grasp": Place(GRASP, 2_500_000, "all")},
         in_compare=False,
     ),
     "ppo-pattern": RosterAgent(
         title="PPO whole movements",
         trainer="sb3:ppo",
-        tasks={"reach": Place(PATTERN, 3_670_016, (GENERATORS,))},
-        sees="all",
+        tasks={"reach": Place(PATTERN, 3_670_016, "all", (GENERATORS,))},
     ),
     "ppo-obstacle": RosterAgent(
         title="PPO whole movements, obstacle only",
         trainer="sb3:ppo",
-        tasks={"reach": Place(PATTERN, 3_670_016, (GENERATORS,))},
-        sees="obstacle",
+        tasks={"reach": Place(PATTERN, 3_670_016, "obstacle", (GENERATORS,))},
         settings={"senses": ["obstacle"]},
     ),
     "ppo-eye-obstacle": RosterAgent(
         title="PPO whole movements, obstacle and eye",
         trainer="sb3:ppo",
-        tasks={"reach": Place(PATTERN, 3_670_016, (GENERATORS,))},
-        sees="obstacle, eye",
+        tasks={"reach": Place(PATTERN, 3_670_016, "obstacle, eye", (GENERATORS,))},
         settings={"senses": ["eye", "obstacle"]},
     ),
     "ppo-reflex": RosterAgent(
         title="PPO step by step, with the reflex",
         trainer="sb3:ppo",
-        tasks={"grasp": Place(GRASP, 2_500_000, (REFLEX,))},
-        sees="all",
+        tasks={"grasp": Place(GRASP, 2_500_000, "all", (REFLEX,))},
         options={"enclosure_reflex": True},
         in_compare=False,
     ),
     "ppo-in-hand": RosterAgent(
         title="PPO step by step, half of the starts in the hand",
         trainer="sb3:ppo",
-        tasks={"grasp": Place(GRASP, 2_500_000, (IN_HAND,))},
-        sees="all",
+        tasks={"grasp": Place(GRASP, 2_500_000, "all", (IN_HAND,))},
         settings={"learning_options": {"in_hand_starts": 0.5}},
         in_compare=False,
     ),
     "sac": RosterAgent(
         title="SAC whole movements",
         trainer="sb3:sac",
-        tasks={"reach": Place(PATTERN, 896_000, (GENERATORS,))},
-        sees="all",
+        tasks={"reach": Place(PATTERN, 896_000, "all", (GENERATORS,))},
     ),
     "sac-her": RosterAgent(
         title="SAC + HER whole movements",
         trainer="sb3:sac",
-        tasks={"reach": Place(GOAL, 896_000, (GENERATORS,))},
-        sees="all",
+        tasks={"reach": Place(GOAL, 896_000, "all", (GENERATORS,))},
         in_compare=False,
     ),
     "td3": RosterAgent(
         title="TD3 whole movements",
         trainer="sb3:td3",
-        tasks={"reach": Place(PATTERN, 896_000, (GENERATORS,))},
-        sees="all",
+        tasks={"reach": Place(PATTERN, 896_000, "all", (GENERATORS,))},
         in_compare=False,
     ),
     "random": RosterAgent(
         title="Random",
         trainer="still:reference",
-        tasks={"reach": Place(PATTERN, 0, (GENERATORS,)), "grasp": Place(GRASP, 0)},
-        sees="nothing",
+        tasks={
+            "reach": Place(PATTERN, 0, "nothing", (GENERATORS,)),
+            "grasp": Place(GRASP, 0, "nothing"),
+        },
         settings={"name": "random"},
     ),
     "scripted": RosterAgent(
         title="Scripted",
         trainer="still:reference",
         tasks={
-            "reach": Place(PATTERN, 0, (GENERATORS, GEOMETRY)),
-            "grasp": Place(GRASP, 0, (REFLEX, GEOMETRY)),
+            "reach": Place(PATTERN, 0, "all", (GENERATORS, GEOMETRY)),
+            "grasp": Place(GRASP, 0, "all", (REFLEX, GEOMETRY)),
         },
-        sees="all",
         settings={"name": "scripted"},
         seeded=False,
     ),
@@ -230,10 +215,9 @@ ROSTER = {
         title="Oracle",
         trainer="still:reference",
         tasks={
-            "reach": Place(PATTERN, 0, (GENERATORS, GEOMETRY, SIMULATOR)),
-            "grasp": Place(GRASP, 0, (GEOMETRY, SIMULATOR)),
+            "reach": Place(PATTERN, 0, "all", (GENERATORS, GEOMETRY, SIMULATOR)),
+            "grasp": Place(GRASP, 0, "all", (GEOMETRY, SIMULATOR)),
         },
-        sees="all",
         settings={"name": "oracle"},
         seeded=False,
     ),

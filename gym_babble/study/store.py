@@ -130,7 +130,7 @@ class Store:
         wanted = {self._path(spec) for spec in specs}
         named = {spec.name: spec for spec in specs}
         paths = sorted((self.folder / "runs").glob("*.json"))
-        return [_misfit(_read(path), named) for path in paths if path not in wanted]
+        return [_misfit(path, named) for path in paths if path not in wanted]
 
     def _run(self, spec: RunSpec) -> StoredRun:
         path = self._path(spec)
@@ -148,9 +148,17 @@ def _stem(spec: RunSpec) -> str:
     return f"{spec.name}.{spec.fingerprint}"
 
 
-def _misfit(record: dict[str, Any], named: dict[str, RunSpec]) -> str:
-    """Why a stored run is no part of the study."""
-    stored = RunSpec.from_json(record["spec"])
+def _misfit(path: Path, named: dict[str, RunSpec]) -> str:
+    """Why a stored run is no part of the study.
+
+    Raises:
+        StudyError: The file is not a run.
+    """
+    record = _read(path)
+    try:
+        stored, physics = RunSpec.from_json(record["spec"]), record["physics"]
+    except (KeyError, TypeError) as error:
+        raise StudyError(f"{path}: not a run of a study: {error}") from error
     now = named.get(stored.name)
     if now is None:
         return f"{stored.name}: the study has no such run"
@@ -158,7 +166,7 @@ def _misfit(record: dict[str, Any], named: dict[str, RunSpec]) -> str:
     if field is not None:
         name, before, after = field
         return f"{stored.name}: {name.removeprefix('run.')} was {before!r}, and is {after!r} now"
-    return f"{stored.name}: ran with physics {record['physics']}, and they are {physics_hash()} now"
+    return f"{stored.name}: ran with physics {physics}, and they are {physics_hash()} now"
 
 
 def _read(path: Path) -> dict[str, Any]:

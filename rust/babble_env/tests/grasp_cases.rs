@@ -239,7 +239,8 @@ fn impossible(task: &GraspTask) -> Vec<(&'static str, GraspRequest)> {
         object: Some([-0.2, 0.15]),
         ..GraspRequest::default()
     };
-    let at_palm = Some(task.before_palm(start, 0.03, 0.001));
+    // One millimetre from where an object lies in the hand.
+    let near_palm = Some(task.before_palm(start, 0.03, 0.002));
     let on_arm = task.before_palm(start, 0.0, 0.0);
     let mut all = Vec::new();
     for object in [[0.5, 0.0], [f64::NAN, 0.1], [0.1, f64::INFINITY]] {
@@ -284,7 +285,7 @@ fn impossible(task: &GraspTask) -> Vec<(&'static str, GraspRequest)> {
             },
         ));
     }
-    let (object, diameter) = (at_palm, Some(0.06));
+    let (object, diameter) = (near_palm, Some(0.06));
     all.push((
         "object",
         GraspRequest {

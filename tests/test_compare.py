@@ -86,19 +86,18 @@ def test_the_studies_of_the_package_can_run(name):
     assert labels == {agent.label for agent in study.agents}
 
 
-def test_compare_prints_and_writes_its_report(tmp_path, monkeypatch, capsys):
+def test_compare_prints_and_writes_its_report(tmp_path, capsys):
     pytest.importorskip("jinja2", reason="the wheel's tests install no extra")
     folder = tmp_path / "report"
     words = ["compare", "--agents", "hebb-paper,random", "--cases", "6", "--budget", "5000"]
     words += ["--report", str(folder), "--json"]
-    monkeypatch.setattr("sys.argv", ["gym-babble", *words])
     with pytest.raises(SystemExit) as ended:
         main(words)
     assert not ended.value.code
     printed = json.loads(capsys.readouterr().out)
     assert list(printed["tasks"]["reach"]["agents"]) == ["hebb-paper", "random"]
     page = (folder / "index.html").read_text(encoding="utf-8")
-    assert "gym-babble compare --agents hebb-paper,random" in page
+    assert f"gym-babble compare --report {folder} --task reach --agents hebb-paper,random" in page
     assert (folder / "study" / "study.json").exists()
     numbers = json.loads((folder / "results.json").read_text(encoding="utf-8"))
     mine = printed["tasks"]["reach"]["agents"]["hebb-paper"]["test"]["success"]["mean"]

@@ -121,7 +121,7 @@ def foreseeing(n):
 def core_learner(env, threads):
     task = env.interface.task
     brain = _core.brain_json(env.interface.entry.name, "paper")
-    return _core.Learner(task, brain, 0, "null", threads)
+    return _core.Learner(task, brain, 0, "null", False, threads)
 
 
 # Each would take 10 s and more.

@@ -69,8 +69,9 @@ def load_agent(path: str | Path, env: EnvLike | None = None) -> HebbBabbling | L
         AgentFileError: The file is cut short, altered, or not an agent.
         ConfigError: It cannot act in the environment.
     """
+    data = check_path("path", path).read_bytes()
     try:
-        keys = _core.tensor_keys(check_path("path", path).read_bytes())
+        keys = _core.tensor_keys(data)
     except ValueError as error:
         raise AgentFileError(f"{path}: {error}") from error
     cls = next((IN_FILES[key] for key in keys if key in IN_FILES), HebbBabbling)

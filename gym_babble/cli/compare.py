@@ -1,7 +1,6 @@
 """`gym-babble compare`."""
 
 import shlex
-import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated
@@ -57,6 +56,19 @@ def compare(
         for name, extra in usual_agents(task).items():
             if extra is not None:
                 say(f"left out: {name}, which needs pip install 'gym-babble[{extra}]'")
+    given = {
+        "--report": report,
+        "--task": task,
+        "--agents": agents,
+        "--seed": seed,
+        "--seeds": seeds,
+        "--cases": cases,
+        "--budget": budget,
+        "--config": config,
+    }
+    words = ["gym-babble", "compare"]
+    for option, value in given.items():
+        words += [] if value is None else [option, str(value)]
     study = comparison(
         task, names, seed=seed, seeds=seeds, cases=cases, budget=budget, config=config
     )
@@ -66,6 +78,6 @@ def compare(
         print_study(store, as_json=as_json)
         if report is not None:
             say("writing the report")
-            name_files(write_report(store, report, shlex.join(["gym-babble", *sys.argv[1:]])))
+            name_files(write_report(store, report, shlex.join(words)))
         if not all(run.finished for run in store.runs()):
             raise typer.Exit(1)

@@ -62,6 +62,7 @@ class Store:
 
     def __init__(self, folder: str | Path) -> None:
         self.folder = Path(folder)
+        self._opened: Study | None = None
 
     def open(self, study: Study) -> None:
         """Makes the folder, or goes on in one of a study of the same name.
@@ -79,14 +80,17 @@ class Store:
             (self.folder / name).mkdir(parents=True, exist_ok=True)
         document = {"format": FORMAT, **study.to_json()}
         write_file(self.folder / SPEC, json.dumps(document, indent=1) + "\n")
+        self._opened = study
 
     def study(self) -> Study:
-        """The spec.
+        """The spec that was opened, also if another process has replaced it; else the stored one.
 
         Raises:
             FileNotFoundError: The folder is not a study's.
             StudyError: The spec cannot be read, or is of another version.
         """
+        if self._opened is not None:
+            return self._opened
         path = self.folder / SPEC
         if not path.is_file():
             raise FileNotFoundError(f"{self.folder} is not the folder of a study: no {SPEC} in it")

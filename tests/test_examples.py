@@ -44,6 +44,10 @@ RUNS = {
         r"\| `BabbleReachGoal-v0` \| pattern \| \d\.\d{3} \| \d\.\d{3} \|",
     ),
     "convergence.py": ("--steps 640", r"posture: 0 in 640 control steps"),
+    "grasp_chain.py": (
+        "--seeds 1 --babbles 5 --cases 2 --diameters 6",
+        r"\{'seed': 0, .+ 'held': [01]\.\d, .+\}",
+    ),
     "grasp_sides.py": ("--cases 12", r"\| all \| 12 \| \d\.\d\d \| \d\.\d\d \|"),
     "grasp_interference.py": (
         "--seeds 1 --babbles 12 --cases 8",
@@ -92,6 +96,7 @@ def test_last_line(name, repository, monkeypatch, capsys, tmp_path):
         ("own_rule.py", {"hebb", "oja", "covariance"}),
         ("sensitivity.py", {"change", "success", "collision", "joint_limit", "legal_rate"}),
         ("grasp_sizes.py", {"diameter", "held", "edges"}),
+        ("grasp_chain.py", {"diameter_cm", "held", "kept", "control_steps"}),
         ("grasp_sides.py", {"rows", "all"}),
         ("solvable.py", {"id", "control", "cases", "scripted", "oracle"}),
         ("convergence.py", {"delta_posture", "posture"}),

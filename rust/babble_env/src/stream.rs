@@ -23,6 +23,8 @@ pub enum Purpose {
     Test = 4,
     /// Random choices of an agent.
     Policy = 5,
+    /// Trials that an agent learns from by their reward.
+    Practice = 6,
 }
 
 impl FromStr for Purpose {

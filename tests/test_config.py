@@ -52,7 +52,9 @@ def test_every_field_of_the_document_is_a_field_of_the_dataclasses():
             if is_dataclass(value):
                 compare(value, document[f.name], f"{path}.{f.name}")
 
-    compare(Config(), PAPER, "config")
+    # Noise is written if there is some.
+    noisy = json.loads(config_json({"noise": {"motor_deg": 1.0}}))
+    compare(Config(), noisy, "config")
     # The numbers of grasping are among them.
     walked = dict(leaves(PAPER))
     for path in ("body.grip.arm_muscles.kp", "body.object.friction", "body.contact.stiffness_n_m"):

@@ -252,7 +252,9 @@ impl ReachNetwork {
     fn amplify(&self, g: &mut [f32]) {
         let gain = self.config.input_gain as f32;
         if gain != 1.0 {
-            g.iter_mut().for_each(|g_i| *g_i = (gain * *g_i).min(1.0));
+            for g_i in g {
+                *g_i = (gain * *g_i).min(1.0);
+            }
         }
     }
 

@@ -158,6 +158,7 @@ impl Task for Slow {
     fn ending(&self) -> Ending {
         Ending {
             goal: false,
+            goes_on: false,
             single_step: false,
             max_steps: 1_000,
         }

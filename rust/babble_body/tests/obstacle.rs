@@ -88,7 +88,7 @@ fn thin_obstacle_is_not_passed_through() {
     let [before, after] = [from, to].map(|q| wire.clearance(&arm, q));
     assert!(before > 0.05 && after > 0.05);
     let touch = wire
-        .first_touch(&arm, from, to, before)
+        .first_touch(&arm, from, to, [before, after])
         .expect("the arm sweeps over the wire");
     assert!(wire.clearance(&arm, between(from, to, touch)).abs() < 1e-6);
 }
@@ -108,7 +108,7 @@ fn touch_at_the_fingertip_is_not_pruned() {
         };
         let (before, after) = (wire.clearance(&arm, from), wire.clearance(&arm, to));
         assert!(before + after > 0.95 * sweep(&arm, from, to));
-        let touch = wire.first_touch(&arm, from, to, before);
+        let touch = wire.first_touch(&arm, from, to, [before, after]);
         assert!(
             touch.is_some_and(|share| (0.4..0.5).contains(&share)),
             "{touch:?}"
@@ -155,7 +155,7 @@ proptest! {
         let obstacle = obstacle_near(&arm, at, radius);
         let clearance = |share: f64| obstacle.clearance(&arm, between(from, to, share));
         let brute = (0..=FINE).map(|k| f64::from(k) / f64::from(FINE)).find(|&s| clearance(s) <= 0.0);
-        let touch = obstacle.first_touch(&arm, from, to, clearance(0.0));
+        let touch = obstacle.first_touch(&arm, from, to, [0.0, 1.0].map(clearance));
         if let Some(brute) = brute {
             let touch = touch.expect("a touch was missed");
             let late = (touch - brute) * sweep(&arm, from, to);
@@ -188,7 +188,8 @@ proptest! {
             // A heading that lasts for 20 steps.
             let heading = spread(seed + k / 20);
             let to = arm.clamp([0, 1].map(|i| from[i] + pace * (heading[i] - 0.5)));
-            let asked = obstacle.first_touch(&arm, from, to, obstacle.clearance(&arm, from));
+            let clearances = [from, to].map(|q| obstacle.clearance(&arm, q));
+            let asked = obstacle.first_touch(&arm, from, to, clearances);
             prop_assert_eq!(watch.touch(&arm, from, to), asked);
             prop_assert_eq!(nothing.touch(&arm, from, to), None);
             from = to;

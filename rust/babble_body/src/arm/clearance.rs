@@ -34,7 +34,7 @@ impl Obstacle {
     /// First share in [0, 1] of the straight joint motion `from` → `to` at which the arm touches,
     /// to within a micrometre of clearance; none if it passes.
     ///
-    /// `clearance` is the clearance at `from`. A point of the arm moves by at most L on the way, so
+    /// `clearances` are those at `from` and `to`. A point of the arm moves by at most L on the way, so
     /// clearances d0 and d1 at the ends with d0 + d1 > L leave room for no touch in between;
     /// otherwise the halves are looked at (conservative advancement).
     #[must_use]
@@ -43,17 +43,13 @@ impl Obstacle {
         arm: &PlanarArm,
         from: [f64; 2],
         to: [f64; 2],
-        clearance: f64,
+        clearances: [f64; 2],
     ) -> Option<f64> {
-        if clearance <= 0.0 {
+        let [at_from, at_to] = clearances;
+        if at_from <= 0.0 {
             return Some(0.0);
         }
-        self.touch_between(
-            arm,
-            (from, clearance),
-            (to, self.clearance(arm, to)),
-            (0.0, 1.0),
-        )
+        self.touch_between(arm, (from, at_from), (to, at_to), (0.0, 1.0))
     }
 
     fn touch_between(
@@ -104,6 +100,8 @@ fn least_distance_squared(segments: &[Segment], point: Vector2<f64>) -> f64 {
 pub struct ContactWatch {
     obstacle: Option<Obstacle>,
     bound: f64,
+    /// The posture at which the clearance was last queried, and that clearance.
+    queried: ([f64; 2], f64),
 }
 
 impl ContactWatch {
@@ -111,7 +109,11 @@ impl ContactWatch {
     #[must_use]
     pub fn new(obstacle: Option<Obstacle>, arm: &PlanarArm, q: [f64; 2]) -> Self {
         let bound = obstacle.map_or(f64::INFINITY, |obstacle| obstacle.clearance(arm, q));
-        Self { obstacle, bound }
+        Self {
+            obstacle,
+            bound,
+            queried: (q, bound),
+        }
     }
 
     /// Looks at the straight joint motion `from` → `to`: the share of it at which the arm first
@@ -123,8 +125,12 @@ impl ContactWatch {
             return None;
         }
         let obstacle = self.obstacle?;
-        let touch = obstacle.first_touch(arm, from, to, obstacle.clearance(arm, from));
+        let before = match self.queried {
+            (posture, clearance) if posture == from => clearance,
+            _ => obstacle.clearance(arm, from),
+        };
         self.bound = obstacle.clearance(arm, to);
-        touch
+        self.queried = (to, self.bound);
+        obstacle.first_touch(arm, from, to, [before, self.bound])
     }
 }

@@ -53,8 +53,7 @@ impl ReachCase {
         target: Vector2<f64>,
         centre: Vector2<f64>,
     ) -> Option<Self> {
-        let posture = |point| task.arm.posture_at(point).filter(|&q| task.arm.in_range(q));
-        let (start, end) = (posture(hand)?, posture(target)?);
+        let (start, end) = (task.posture(hand)?, task.posture(target)?);
         let obstacle = obstacle_at(task, centre.into());
         let clear = |q| obstacle.clearance(&task.arm, q) > 0.0;
         (clear(start) && clear(end)).then_some(Self {
@@ -129,6 +128,12 @@ pub(super) fn posture_for(
 }
 
 impl ReachTask {
+    /// The posture with the fingertip at a point \[m\]; none where it is out of reach or of the joint
+    /// ranges.
+    pub(super) fn posture(&self, point: Vector2<f64>) -> Option<[f64; 2]> {
+        self.arm.posture_at(point).filter(|&q| self.arm.in_range(q))
+    }
+
     /// Whether the task is done while the arm is like this: the fingertip is at the target, and at
     /// rest if the options ask for that.
     ///

@@ -9,6 +9,10 @@ use super::task::ReachTask;
 use crate::error::EnvError;
 use crate::outcome::Outcome;
 
+/// An arm with less than this clearance in a posture touches, whatever the rounding errors of the
+/// bound in [`ContactWatch`](babble_body::ContactWatch) \[m\].
+const SURELY_INSIDE_M: f64 = -1e-9;
+
 /// How a movement is simulated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fidelity {
@@ -45,20 +49,52 @@ impl MovementPath {
     /// # Errors
     /// [`EnvError::Brain`] for b outside of (0, 1).
     pub fn new(task: &ReachTask, case: &ReachCase, b: [f64; 2]) -> Result<Self, EnvError> {
-        let way = Self::desired(task, case, b)?;
+        Ok(Self::along(task, case, &generator(task, b)?))
+    }
+
+    fn along(task: &ReachTask, case: &ReachCase, generator: &TimeBaseGenerator) -> Self {
+        let steps = task.config.reach.movement_steps();
         let mut path = Self {
-            postures: Vec::with_capacity(way.len()),
+            postures: Vec::with_capacity(steps),
             violates: false,
         };
-        for point in way {
-            let posture = task.arm.posture_at(point);
-            let Some(q) = posture.filter(|&q| task.arm.in_range(q)) else {
+        for point in points(case, generator, steps) {
+            let Some(q) = task.posture(point) else {
                 path.violates = true;
                 break;
             };
             path.postures.push(q);
         }
-        Ok(path)
+        path
+    }
+
+    /// Whether the movement with parameters b is [legal](Self::is_legal). Most movements are not, and
+    /// one of a few postures on their way shows it: those are looked at before all others.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn is_legal_with(
+        task: &ReachTask,
+        case: &ReachCase,
+        b: [f64; 2],
+        fidelity: Fidelity,
+    ) -> Result<bool, EnvError> {
+        let generator = generator(task, b)?;
+        let steps = task.config.reach.movement_steps();
+        // Every 16th posture or, if they do not end with the last one, more.
+        let few = steps >> steps.trailing_zeros().min(4);
+        let surely_illegal = |point| {
+            task.posture(point).is_none_or(|q| {
+                fidelity == Fidelity::QuasiStatic
+                    && case
+                        .obstacle
+                        .is_some_and(|obstacle| obstacle.clearance(&task.arm, q) < SURELY_INSIDE_M)
+            })
+        };
+        if few < steps && points(case, &generator, few).any(surely_illegal) {
+            return Ok(false);
+        }
+        Ok(Self::along(task, case, &generator).is_legal(task, case, fidelity))
     }
 
     /// Whether the movement neither touches the obstacle nor asks for a posture outside of the
@@ -184,10 +220,30 @@ impl MovementPath {
         case: &ReachCase,
         b: [f64; 2],
     ) -> Result<Vec<Vector2<f64>>, EnvError> {
-        let generator = TimeBaseGenerator::new(b[0], b[1], task.config.reach.movement_s)?;
-        let mut curve = vec![[0.0; 2]; task.config.reach.movement_steps()];
-        generator.sample_into(&mut curve);
-        let place = |c| babble_brain::generator::place(case.hand, case.target, c).into();
-        Ok(curve.into_iter().map(place).collect())
+        let steps = task.config.reach.movement_steps();
+        Ok(points(case, &generator(task, b)?, steps).collect())
     }
+}
+
+/// Eq. 5 with parameters b.
+fn generator(task: &ReachTask, [b1, b2]: [f64; 2]) -> Result<TimeBaseGenerator, EnvError> {
+    Ok(TimeBaseGenerator::new(
+        b1,
+        b2,
+        task.config.reach.movement_s,
+    )?)
+}
+
+/// The fingertip's desired positions \[m\] at `count` equal intervals of time: Eq. 6.
+fn points(
+    case: &ReachCase,
+    generator: &TimeBaseGenerator,
+    count: usize,
+) -> impl Iterator<Item = Vector2<f64>> {
+    let mut curve = vec![[0.0; 2]; count];
+    generator.sample_into(&mut curve);
+    let (hand, target) = (case.hand, case.target);
+    curve
+        .into_iter()
+        .map(move |c| babble_brain::generator::place(hand, target, c).into())
 }

@@ -73,7 +73,7 @@ impl ReachCase {
             let case = Self::search_geometry(task, stream, search)?;
             search.play()?;
             let b1 = stream.uniform(low, high);
-            if MovementPath::new(task, &case, [b1, 1.0 - b1])?.is_legal(task, &case, fidelity) {
+            if MovementPath::is_legal_with(task, &case, [b1, 1.0 - b1], fidelity)? {
                 return Ok(case);
             }
         }
@@ -253,7 +253,7 @@ fn draw_other_end(
             continue;
         };
         search.play()?;
-        if MovementPath::new(task, &case, [b1, 1.0 - b1])?.is_legal(task, &case, drawn_by(task)) {
+        if MovementPath::is_legal_with(task, &case, [b1, 1.0 - b1], drawn_by(task))? {
             return Ok(case);
         }
     }

@@ -106,6 +106,7 @@ impl Task for Slow {
             action: entry("action", vec![]),
             reward_terms: &[],
             facts: &[],
+            measures: &[],
             outcomes: vec![],
             max_episode_steps: 3,
             control_hz: 1.0,

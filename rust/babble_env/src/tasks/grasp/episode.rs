@@ -8,6 +8,7 @@ use super::sight::{self, FOVEA_NEURONS};
 use super::state::{GraspState, Moment, at, setup};
 use super::task::GraspTask;
 use crate::episode::clipped;
+use crate::noise::{self, Errors};
 use crate::options::{Control, Reward};
 use crate::outcome::Outcome;
 use crate::progress::{Lifecycle, Progress};
@@ -76,7 +77,8 @@ pub(super) fn advance(
 ) -> bool {
     // In the goal form a failure leaves everything as it is until the time limit.
     if !state.progress.outcome.is_failure() {
-        state.advance(task, clipped(action));
+        let errors = task.config.noise.muscles(&mut state.lifecycle.stream);
+        state.advance(task, clipped(action), errors);
         let scene = sight::scene(task, &state.world, &state.case);
         let seen = task.eye.reflex_step(&scene, state.gaze);
         state.in_sight = seen.is_some();
@@ -123,6 +125,40 @@ pub(super) fn observe(
     for (out, force) in out[at::TOUCH..].iter_mut().zip(forces) {
         *out = (force / most).min(1.0) as f32;
     }
+    let errors = task.config.noise.senses(&state.lifecycle.stream);
+    if !errors.are_none() {
+        add_errors(task, errors, out);
+    }
+}
+
+/// The senses' errors.
+fn add_errors(task: &GraspTask, mut errors: Errors, out: &mut [f32]) {
+    let deviations = &task.config.noise;
+    let (ranges, stretch) = (task.robot.ranges(), task.stretch_bounds());
+    let felt: [f64; 4] = errors.angles(deviations.joint_deg);
+    for (i, at) in [at::ARM, at::ARM + 1, at::HAND, at::HAND + 1]
+        .into_iter()
+        .enumerate()
+    {
+        let [low, high] = ranges[i];
+        noise::add(&mut out[at], felt[i] / (high - low), [0.0, 1.0]);
+        noise::add(
+            &mut out[at::STRETCH + i],
+            -felt[i],
+            [-stretch[i], stretch[i]],
+        );
+    }
+    for (i, [low, high]) in task.eye.ranges().into_iter().enumerate() {
+        let [error] = errors.angles(deviations.eye_deg);
+        noise::add(&mut out[at::EYE + i], error / (high - low), [0.0, 1.0]);
+    }
+    for edge in &mut out[at::FOVEA..at::HAND] {
+        noise::add(edge, errors.next(deviations.fovea), [0.0, 1.0]);
+    }
+    for force in &mut out[at::TOUCH..] {
+        let error = errors.next(deviations.touch_n) / task.config.grasp.touch_max_n;
+        noise::add(force, error, [0.0, 1.0]);
+    }
 }
 
 /// The state at the beginning of an episode; the eye has not turned yet.
@@ -156,13 +192,14 @@ pub struct Potential {
 
 impl GraspState {
     /// One control period of physics.
-    fn advance(&mut self, task: &GraspTask, action: [f64; 4]) {
+    fn advance(&mut self, task: &GraspTask, action: [f64; 4], mut errors: Errors) {
         let asked = self.drive(task, action);
         let released = task.options.reflex_releases && self.opens_hand(task, action);
         self.reflex &= !released;
+        let errors = errors.angles(task.config.noise.motor_deg);
         let mut period = Period::default();
         for _ in 0..task.config.grasp.physics_steps {
-            let drive = self.with_reflex(task, asked);
+            let drive = task.with_errors(self.with_reflex(task, asked), errors);
             task.robot.step(&mut self.world, &drive);
             let touch = task.robot.touch(&self.world);
             period.add(&touch);

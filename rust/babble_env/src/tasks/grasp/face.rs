@@ -18,12 +18,22 @@ use crate::case::{CasePart, CaseValues};
 use crate::config::Config;
 use crate::error::EnvError;
 use crate::executor::{Executor, Stop};
+use crate::noise::NoiseConfig;
 use crate::outcome::Outcome;
 use crate::picture::View;
 use crate::progress::{Ending, Lifecycle, Progress};
 use crate::spec::Spec;
 use crate::stream::{Purpose, Stream};
 use crate::task::{MAX_MEASURES, MAX_TERMS, Task};
+
+/// Written as the options alone while there is no noise.
+#[derive(Serialize)]
+struct OptionsAndNoise {
+    #[serde(flatten)]
+    options: GraspOptions,
+    #[serde(skip_serializing_if = "NoiseConfig::is_off")]
+    noise: NoiseConfig,
+}
 
 impl Task for GraspTask {
     type Request = GraspRequest;
@@ -67,9 +77,11 @@ impl Task for GraspTask {
             profile,
             body,
             grasp,
+            noise,
             ..
         } = &self.config;
-        (profile, body, grasp, options)
+        let noise = *noise;
+        (profile, body, grasp, OptionsAndNoise { options, noise })
     }
 
     fn config(&self) -> &Config {

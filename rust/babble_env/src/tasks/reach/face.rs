@@ -18,6 +18,7 @@ use crate::case::{CasePart, CaseValues};
 use crate::config::Config;
 use crate::error::EnvError;
 use crate::executor::{Executor, Stop};
+use crate::noise::NoiseConfig;
 use crate::options::Control;
 use crate::outcome::Outcome;
 use crate::picture::View;
@@ -32,6 +33,8 @@ struct Fingerprint<'a> {
     profile: &'a str,
     body: &'a Body,
     reach: &'a ReachConfig,
+    #[serde(skip_serializing_if = "NoiseConfig::is_off")]
+    noise: NoiseConfig,
 }
 
 impl Task for ReachTask {
@@ -76,12 +79,14 @@ impl Task for ReachTask {
             profile,
             body,
             reach,
+            noise,
             ..
         } = &self.config;
         let config = Fingerprint {
             profile,
             body,
             reach,
+            noise: *noise,
         };
         (config, options)
     }

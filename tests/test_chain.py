@@ -90,7 +90,6 @@ def test_the_paper_variant_has_no_practice():
         {"sizes": 1},
         {"babble": {"jitter_deg": 0}},
         {"babble": {"withdrawal": "free"}},
-        {"rule": {"name": "covariance", "eta": 1.0, "w_max": 0.2, "xi": 0.2}},
     ],
     ids=json.dumps,
 )
@@ -100,6 +99,12 @@ def test_each_part_can_be_left_out(change):
         if not isinstance(value, dict):
             assert agent.brain[name] == value
     evaluate(agent, cases=scenarios("palm_side", 2))
+
+
+def test_it_learns_by_another_rule():
+    agent = chain(seed=2, brain=SMALL, rule="covariance").learn(5)
+    assert agent.brain["rule"]["name"] == "covariance"
+    assert (agent.weights["contact.weights"] < 0).any()
 
 
 def test_what_it_perceives_and_recalls_are_maps(agent):

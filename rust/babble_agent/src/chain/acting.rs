@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use babble_env::tasks::grasp::{SENSES, at};
-use babble_env::{Control, Executor, GraspTask, Purpose, Stream};
+use babble_env::{Control, Executor, GraspTask, Purpose, Stream, Task};
 
 use super::chunks::ADVANCE_S;
 use super::infant::ADVANCE_RAD;
@@ -119,7 +119,8 @@ impl<'a> ChainPolicy<'a> {
         senses: &[f32],
         choose: impl FnOnce([f64; 3]) -> RouteChoice,
     ) -> Result<ChainPlan, AgentError> {
-        let senses = observation::<SENSES>(senses)?;
+        // The senses that an option adds come last.
+        let senses = observation::<SENSES>(&senses[..senses.len().min(SENSES)])?;
         let targets = self.targets(senses)?;
         let felt = self.felt(senses);
         let choice = choose(self.state(&felt, &targets));
@@ -334,7 +335,7 @@ impl ChainPlan {
 
 impl Policy for ChainPolicy<'_> {
     fn senses_len(&self) -> usize {
-        SENSES
+        self.task.senses_len()
     }
 
     fn action_len(&self) -> usize {
@@ -342,21 +343,20 @@ impl Policy for ChainPolicy<'_> {
     }
 
     fn plan(&self, senses: &[f32], executor: &mut Executor) -> Result<Vec<Plan>, AgentError> {
-        let (all, _) = senses.as_chunks::<SENSES>();
-        let plan = |senses: &[f32; SENSES]| {
+        let all: Vec<&[f32]> = senses.chunks_exact(self.senses_len()).collect();
+        let plan = |senses: &[f32]| {
             let plan = self.begin(senses, |state| self.network.best_route(state))?;
             Ok(Plan::Chain(plan))
         };
-        if let [one] = all {
+        if let [one] = all[..] {
             return Ok(vec![plan(one)?]);
         }
-        executor.map(0..all.len(), |i, _| plan(&all[i]))
+        executor.map(0..all.len(), |i, _| plan(all[i]))
     }
 
     fn decide(&self, senses: &[f32], _: &mut Executor) -> Result<Vec<Vec<f64>>, AgentError> {
-        let (all, _) = senses.as_chunks::<SENSES>();
-        let decide = |senses: &[f32; SENSES]| self.network.decide_from(senses);
-        all.iter().map(decide).collect()
+        let all = senses.chunks_exact(self.senses_len());
+        all.map(|senses| self.network.decide_from(senses)).collect()
     }
 
     fn act(&self, plan: &mut Plan, senses: &[f32], action: &mut [f32]) {

@@ -219,7 +219,8 @@ impl ChainNetwork {
 
     /// Activity of the input map for a flat observation.
     fn see(&self, senses: &[f32]) -> Result<Vec<f32>, AgentError> {
-        let senses = observation::<SENSES>(senses)?;
+        // The senses that an option adds come last.
+        let senses = observation::<SENSES>(&senses[..senses.len().min(SENSES)])?;
         let eye = [senses[at::EYE], senses[at::EYE + 1]];
         self.input
             .encode(eye, &senses[at::FOVEA..][..FOVEA_NEURONS])

@@ -65,6 +65,7 @@ class _Records(TypedDict):
     outcome: NDArray[np.uintp]
     facts: NDArray[np.bool_]
     terms: NDArray[np.float64]
+    measures: NotRequired[NDArray[np.float64]]
 
 class _Babbled(TypedDict):
     percepts: dict[str, NDArray[np.float32]]

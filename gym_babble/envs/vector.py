@@ -293,6 +293,10 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
         infos["_outcome"] = mask.copy()
         infos["reward_terms"] = terms
         infos["_reward_terms"] = mask.copy()
+        if spec.measures:
+            for name, numbers in spec.measured(shown["measures"]).items():
+                infos[name] = np.where(mask[:, None], numbers, 0.0)
+                infos[f"_{name}"] = mask.copy()
         return infos
 
     def _add_final(self, infos: dict[str, Any]) -> None:
@@ -315,6 +319,8 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
             info["outcome"] = {name: bool(last["outcome"][k] == code) for name, code in codes}
             terms = last["terms"][k].tolist()
             info["reward_terms"] = dict(zip(spec.reward_terms, terms, strict=True))
+            if spec.measures:
+                info |= spec.measured(last["measures"][k])
             final = {
                 "final_obs": self._interface.observation(
                     last["senses"][k], [goal[k] for goal in goals], retina

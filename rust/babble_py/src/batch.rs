@@ -42,6 +42,8 @@ pub(crate) struct Batch {
     outcomes: Vec<Py<PyString>>,
     /// The outcomes, in the same order.
     outcome_names: Vec<&'static str>,
+    /// Names of the measures, and how many numbers each has.
+    measures: Vec<(Py<PyString>, usize)>,
 }
 
 #[pymethods]
@@ -76,6 +78,11 @@ impl Batch {
             terms: names(spec.reward_terms),
             outcomes: names(&spec.outcomes),
             outcome_names: spec.outcomes,
+            measures: spec
+                .measures
+                .iter()
+                .map(|one| (PyString::intern(py, one.name).unbind(), one.labels.len()))
+                .collect(),
         })
     }
 
@@ -165,7 +172,8 @@ impl Batch {
     }
 
     /// What all environments showed last, in new arrays of length n: senses, achieved goals and desired
-    /// goals where the task has them, rewards, terminated, truncated, outcome codes, facts, reward terms.
+    /// goals where the task has them, rewards, terminated, truncated, outcome codes, facts, reward terms,
+    /// measures where the task has them.
     fn all<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let envs = &*self.envs.read()?;
         let records: Vec<&Record> = (0..envs.envs()).filter_map(|i| envs.record(i)).collect();
@@ -287,6 +295,12 @@ impl Batch {
         shown.set_item(intern!(py, "outcome"), outcome)?;
         let terms = named(py, &self.terms, &step.terms)?;
         shown.set_item(intern!(py, "reward_terms"), terms)?;
+        let mut from = 0;
+        for (name, n) in &self.measures {
+            let numbers = PyArray1::from_slice(py, &info.measures[from..from + n]);
+            shown.set_item(name, numbers)?;
+            from += n;
+        }
         (
             PyArray1::from_slice(py, senses),
             step.reward,
@@ -322,6 +336,11 @@ impl Batch {
         let n = self.terms.len();
         let terms = table(py, n, each().map(|r| &r.step.terms[..n]))?;
         dict.set_item("terms", terms)?;
+        let n = self.measures.iter().map(|(_, n)| n).sum();
+        if n > 0 {
+            let measures = table(py, n, each().map(|r| &r.info.measures[..n]))?;
+            dict.set_item("measures", measures)?;
+        }
         Ok(dict)
     }
 }

@@ -56,7 +56,7 @@ pub(super) fn fresh(task: &GraspTask, lifecycle: Lifecycle<GraspRequest>) -> Gra
 pub(super) fn begin(task: &GraspTask, state: &mut GraspState, case: GraspCase) {
     *state = at_start(task, case, state.lifecycle.clone());
     let scene = sight::scene(task, &state.world, &case);
-    state.gaze = sight::foveate(task, &scene);
+    (state.gaze, state.in_sight) = sight::foveate(task, &scene);
     state.record(task);
 }
 
@@ -80,7 +80,10 @@ pub(super) fn advance(
         let errors = task.config.noise.muscles(&mut state.lifecycle.stream);
         state.advance(task, clipped(action), errors);
         let scene = sight::scene(task, &state.world, &state.case);
-        state.gaze = sight::follow(task, &scene, state.gaze);
+        let seen = task.eye.reflex_step(&scene, state.gaze);
+        state.in_sight = seen.is_some();
+        // Where no red is seen the eye stays as it is.
+        state.gaze = seen.unwrap_or(state.gaze);
         sight::look(task, &scene, state.gaze, edges);
     }
     state.record(task);
@@ -114,7 +117,12 @@ pub(super) fn observe(
             (state.equilibrium[i] - posture[i]).clamp(-stretch[i], stretch[i]) as f32;
     }
     out[at::TIME] = (f64::from(state.progress.steps) / limit).min(1.0) as f32;
-    for (out, force) in out[at::TOUCH..].iter_mut().zip(state.touch) {
+    let arm = task
+        .options
+        .arm_touch
+        .then(|| task.robot.arm_touch(&state.world));
+    let forces = state.touch.into_iter().chain(arm.into_iter().flatten());
+    for (out, force) in out[at::TOUCH..].iter_mut().zip(forces) {
         *out = (force / most).min(1.0) as f32;
     }
     let errors = task.config.noise.senses(&state.lifecycle.stream);
@@ -163,6 +171,7 @@ fn at_start(task: &GraspTask, case: GraspCase, lifecycle: Lifecycle<GraspRequest
         equilibrium: begin.posture,
         case,
         gaze: task.eye.rest(),
+        in_sight: false,
         touch: [0.0; 3],
         enclosure: Enclosure::default(),
         reflex: false,
@@ -185,6 +194,8 @@ impl GraspState {
     /// One control period of physics.
     fn advance(&mut self, task: &GraspTask, action: [f64; 4], mut errors: Errors) {
         let asked = self.drive(task, action);
+        let released = task.options.reflex_releases && self.opens_hand(task, action);
+        self.reflex &= !released;
         let errors = errors.angles(task.config.noise.motor_deg);
         let mut period = Period::default();
         for _ in 0..task.config.grasp.physics_steps {
@@ -194,7 +205,7 @@ impl GraspState {
             period.add(&touch);
             self.reach |= touch.any();
             self.palm_reach |= touch.palm > 0.0;
-            self.reflex |= task.options.enclosure_reflex && touch.palm > 0.0;
+            self.reflex |= task.options.enclosure_reflex && touch.palm > 0.0 && !released;
             if period.collision {
                 break;
             }
@@ -234,6 +245,18 @@ impl GraspState {
         }
     }
 
+    /// Whether an action, whose equilibrium points are set, opens the hand: in `posture` control both
+    /// thumb and finger are asked to flex less than they do, in the others both are moved or pulled open.
+    fn opens_hand(&self, task: &GraspTask, action: [f64; 4]) -> bool {
+        match task.options.control {
+            Control::Posture => {
+                let posture = task.robot.posture(&self.world);
+                self.equilibrium[2] < posture[2] && self.equilibrium[3] < posture[3]
+            }
+            _ => action[2] < 0.0 && action[3] < 0.0,
+        }
+    }
+
     /// The enclosure reflex in place of what the action asks of the hand.
     fn with_reflex(&mut self, task: &GraspTask, asked: MuscleCommands) -> MuscleCommands {
         if !self.reflex {
@@ -254,7 +277,10 @@ impl GraspState {
     fn follow_grip(&mut self, task: &GraspTask, contacts: Contacts) -> Outcome {
         let numbers = &task.config.grasp;
         let in_hand = task.in_hand(&self.world, self.case.radius());
-        if self.enclosure.step(numbers, contacts, in_hand) {
+        let tried = self.enclosure.step(numbers, contacts, in_hand);
+        if task.options.support_stays {
+            self.enclosure.try_again(numbers);
+        } else if tried {
             task.robot.remove_support(&mut self.world);
         }
         let centre = task.robot.object(&self.world);

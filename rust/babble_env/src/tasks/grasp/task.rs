@@ -64,6 +64,14 @@ impl GraspTask {
                 bound: "in [0, 1]".to_owned(),
             });
         }
+        if options.reflex_releases && !options.enclosure_reflex {
+            return Err(EnvError::OptionKind {
+                option: "reflex_releases",
+                value: "true".to_owned(),
+                expected: "possible without enclosure_reflex: there is no reflex to stop"
+                    .to_owned(),
+            });
+        }
         check_locks(&config)?;
         Ok(Self {
             robot: Robot::new(&config.body, config.grasp.physics_step_s()),

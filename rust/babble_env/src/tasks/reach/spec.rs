@@ -26,6 +26,7 @@ pub(super) fn spec(task: &ReachTask) -> Spec {
         action: action(task),
         reward_terms: reward_terms(task),
         facts: &SUCCESS_FACTS,
+        measures: &[],
         outcomes: OUTCOMES.map(Outcome::name).to_vec(),
         max_episode_steps: task.options.max_episode_steps,
         control_hz: 1.0 / task.config.reach.control_period_s,

@@ -120,6 +120,39 @@ def vote(stores: Stores) -> str:
     return markdown(["choice of b1", "sees", "success", "by seed"], rows)
 
 
+def readouts(stores: Stores) -> str:
+    """Which rule, map and readout come how near to what the obstacle's direction allows."""
+    titles = {
+        "obstacle, Eq. 7": "Eq. 7, 21 × 21 over ± 60°",
+        "fine obstacle, Hebb": "Hebb, η = 0.1, 41 × 41 over ± 40°",
+    }
+    readouts = {"mean": "mean of the map, Eq. 4", "peak": "around the strongest neuron"}
+    rows = [
+        [
+            titles[row["network"]],
+            readouts[row["readout"]],
+            share(row["success"]),
+            ", ".join(map(share, row["by_seed"])),
+        ]
+        for row in stores["readouts"]["obstacle"]
+    ]
+    return markdown(["rule and map", "readout", "success", "by seed"], rows)
+
+
+def changed_body(stores: Stores) -> str:
+    """How far agents fall in a changed body, and after how much learning they are back."""
+    found = stores["changed_body"]["hebb"]
+    rates = {(row["agent"], row["change"], row["movements"]): row["success"] for row in found}
+    agents, changes, budgets = (list(dict.fromkeys(part)) for part in zip(*rates, strict=True))
+    rows = [
+        [agent, change, *(share(rates[agent, change, budget]) for budget in budgets)]
+        for agent in agents
+        for change in changes
+    ]
+    later = [f"after {budget:,} movements more" for budget in budgets[1:]]
+    return markdown(["agent", "change", "at once", *later], rows)
+
+
 def periods(stores: Stores) -> str:
     """What the time between two applications of the rule decides."""
     rows = [
@@ -361,7 +394,8 @@ def tuning(stores: Stores) -> str:
 BLOCKS: dict[str, Callable[[Stores], str]] = {
     block.__name__: block
     for block in (
-        *(table1_short, table1, fig4, sensitivity, vote, table2_short, table2, hands, holding),
+        *(table1_short, table1, fig4, sensitivity, vote, readouts, changed_body),
+        *(table2_short, table2, hands, holding),
         *(
             sizes,
             engines,

@@ -49,6 +49,14 @@ STORES: dict[str, dict[str, str]] = {
     "solved": {id_: f"python examples/solvable.py --ids {id_}" for id_ in SOLVED},
     "sensitivity": {"rows": "python examples/sensitivity.py"},
     "vote": {"rows": "python examples/obstacle_alone.py"},
+    "readouts": {
+        "obstacle": "python examples/readouts.py --bodies paper --seeds 2 --movements 20000 "
+        '--networks "obstacle, Eq. 7" "fine obstacle, Hebb"',
+    },
+    "changed_body": {
+        "hebb": "python examples/changed_body.py --ppo 0 --movements 2000 --repair 250 1000 "
+        "--seeds 1 --tests 500",
+    },
     "fig4": {"paper": "gym-babble reproduce fig4"},
     "fig5": {"paper": "gym-babble reproduce fig5"},
     "grasp": {"hebb": "gym-babble compare --task grasp --agents hebb-paper --seeds 3"},

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use babble_env::{Executor, Purpose, Stream};
 
-use crate::chain::acting::ChainPlan;
+use crate::chain::plan::ChainPlan;
 use crate::error::AgentError;
 
 /// What an agent has decided to do in an episode, and how far it has come.

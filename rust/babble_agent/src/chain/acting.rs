@@ -9,6 +9,7 @@ use babble_env::{Control, Executor, GraspTask, Purpose, Stream, Task};
 use super::chunks::ADVANCE_S;
 use super::infant::ADVANCE_RAD;
 use super::network::{ChainNetwork, Recalled};
+use super::plan::{ChainPlan, Phase, Targets};
 use super::route::{Detour, RouteChoice, Routes};
 use crate::error::AgentError;
 use crate::grasp::policy::towards;
@@ -33,51 +34,6 @@ const CLOSE_STEPS: u32 = 70;
 const LOOSE_STEPS: u32 = 10;
 
 const DEG: f64 = std::f64::consts::PI / 180.0;
-
-/// A link of the chain.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Phase {
-    /// The elbow folds, the hand a fist.
-    Fold,
-    /// The shoulder turns.
-    Turn,
-    /// The elbow extends.
-    Extend,
-    /// The arm goes before the object.
-    Reach,
-    /// The hand opens there.
-    Open,
-    /// The arm advances until the palm touches.
-    Advance,
-    /// The hand closes, the arm stays.
-    Close,
-}
-
-/// Postures of a chain that is played \[rad\].
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Targets {
-    pregrasp: [f64; 2],
-    contact: [f64; 2],
-    hand: [f64; 2],
-}
-
-/// A chain under way.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ChainPlan {
-    /// Which link is played.
-    pub phase: Phase,
-    /// Control steps made of it.
-    pub step: u32,
-    /// The way that was chosen at the beginning.
-    pub choice: RouteChoice,
-    targets: Targets,
-    /// Shoulder and elbow when this link began \[rad\].
-    from: [f64; 2],
-    /// Whether the hand is a fist on its way.
-    fist: bool,
-    /// Control steps without a grip.
-    loose: u32,
-}
 
 /// What is felt in a control step.
 struct Felt {
@@ -256,17 +212,17 @@ impl<'a> ChainPolicy<'a> {
         let near = |joint: usize, target: f64| (felt.arm[joint] - target).abs() < NEAR_DETOUR;
         match plan.phase {
             Phase::Fold if plan.is_over(near(1, fold), DETOUR_STEPS) => {
-                plan.enter(Phase::Turn, felt);
+                plan.enter(Phase::Turn, felt.arm);
             }
             Phase::Turn if plan.is_over(near(0, turn), DETOUR_STEPS) => {
-                plan.enter(Phase::Extend, felt);
+                plan.enter(Phase::Extend, felt.arm);
             }
             Phase::Extend if plan.is_over(near(1, extend), DETOUR_STEPS) => {
                 self.look(plan, senses);
-                plan.enter(Phase::Reach, felt);
+                plan.enter(Phase::Reach, felt.arm);
             }
             Phase::Reach if brain.reflex && felt.palm && !plan.fist => {
-                plan.enter(Phase::Close, felt);
+                plan.enter(Phase::Close, felt.arm);
             }
             Phase::Reach if plan.is_over(Self::is_there(plan, felt), REACH_STEPS) => {
                 let next = if plan.fist {
@@ -274,19 +230,19 @@ impl<'a> ChainPolicy<'a> {
                 } else {
                     Phase::Advance
                 };
-                plan.enter(next, felt);
+                plan.enter(next, felt.arm);
             }
             Phase::Open if plan.is_over(felt.hand.iter().all(|&x| x < OPEN), OPEN_STEPS) => {
                 plan.fist = false;
-                plan.enter(Phase::Advance, felt);
+                plan.enter(Phase::Advance, felt.arm);
             }
-            Phase::Advance if brain.reflex && felt.palm => plan.enter(Phase::Close, felt),
+            Phase::Advance if brain.reflex && felt.palm => plan.enter(Phase::Close, felt.arm),
             Phase::Advance => self.end_advance(plan, felt, senses),
             Phase::Close => {
                 plan.loose = if felt.grips { 0 } else { plan.loose + 1 };
                 if plan.step >= CLOSE_STEPS && plan.loose > LOOSE_STEPS {
                     self.look(plan, senses);
-                    plan.enter(Phase::Reach, felt);
+                    plan.enter(Phase::Reach, felt.arm);
                 }
             }
             _ => {}
@@ -302,9 +258,9 @@ impl<'a> ChainPolicy<'a> {
         let brain = self.network.config();
         if brain.reflex && brain.advance {
             self.look(plan, senses);
-            plan.enter(Phase::Reach, felt);
+            plan.enter(Phase::Reach, felt.arm);
         } else {
-            plan.enter(Phase::Close, felt);
+            plan.enter(Phase::Close, felt.arm);
         }
     }
 
@@ -317,19 +273,6 @@ impl<'a> ChainPolicy<'a> {
         if let Ok(targets) = self.targets(senses) {
             plan.targets = targets;
         }
-    }
-}
-
-impl ChainPlan {
-    fn is_over(&self, done: bool, steps: u32) -> bool {
-        done || self.step >= steps
-    }
-
-    fn enter(&mut self, phase: Phase, felt: &Felt) {
-        self.phase = phase;
-        self.step = 0;
-        self.loose = 0;
-        self.from = felt.arm;
     }
 }
 

@@ -13,6 +13,7 @@ pub mod chunks;
 pub mod code;
 pub mod infant;
 mod network;
+pub mod plan;
 pub mod practice;
 pub mod route;
 

@@ -74,8 +74,8 @@ def load_agent(path: str | Path, env: EnvLike | None = None) -> HebbBabbling | L
         ConfigError: It cannot act in the environment.
         MissingExtraError: It needs stable-baselines3, which is not installed.
     """
-    if path in TRAINED:
-        path = trained_file(str(path))
+    if isinstance(path, str) and path in TRAINED:
+        path = trained_file(path)
         if path.suffix == ".zip":
             return _model(path, env)
     data = check_path("path", path).read_bytes()

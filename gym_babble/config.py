@@ -36,6 +36,7 @@ __all__ = [
     "Hand",
     "Joint",
     "Muscles",
+    "Noise",
     "Object",
     "ReachConfig",
     "RegionConfig",
@@ -315,6 +316,32 @@ class GraspConfig:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Noise:
+    """Standard deviations of errors of senses and muscles [C]; none by default.
+
+    Each control step has errors of its own, independent and normal with mean 0, from the episode's
+    random stream. Muscles have theirs while the arm moves, senses when they are shown; these are
+    cut to the bounds of the sense. Goals, rewards and facts have none. Movements that are babbled
+    in reaching have the same noise; babbles of grasping have none.
+    """
+
+    joint_deg: float = 0.0
+    """Felt joint angles [deg]: the senses `arm`, `stretch` and, in grasping, `hand`. A joint has
+    one error, which `stretch` shows with the opposite sign."""
+    eye_deg: float = 0.0
+    """Felt pan and tilt [deg]: the sense `eye`. The gaze itself has no error."""
+    sight_deg: float = 0.0
+    """Seen directions [deg]: the senses `hand` and `obstacle` of reaching."""
+    fovea: float = 0.0
+    """Edges in the fovea, of which the strongest is 1: the sense `fovea`."""
+    touch_n: float = 0.0
+    """Felt normal forces [N]: the sense `touch`."""
+    motor_deg: float = 0.0
+    """Equilibrium points that the muscles pull to [deg], cut to the joint ranges. In `torque`
+    control a muscle's torque has this error times K_P."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Config:
     """Body and tasks."""
 
@@ -323,6 +350,7 @@ class Config:
     body: Body = field(default_factory=Body)
     reach: ReachConfig = field(default_factory=ReachConfig)
     grasp: GraspConfig = field(default_factory=GraspConfig)
+    noise: Noise = field(default_factory=Noise)
 
     @classmethod
     def profile_named(cls, name: str) -> Config:
@@ -362,12 +390,15 @@ class Config:
         return round((reach.movement_s + settle_s) / reach.control_period_s)
 
     def to_json(self) -> str:
-        """The whole config as JSON.
+        """The whole config as JSON, without the noise if there is none.
 
         Raises:
             ConfigError: A field is not a number, a text or a list of these, or not finite.
         """
-        return json.dumps(plain(self, "", kind="config: "))
+        document = plain(self, "", kind="config: ")
+        if self.noise == Noise():
+            del document["noise"]
+        return json.dumps(document)
 
 
 ConfigLike: TypeAlias = "str | Path | Mapping[str, Any] | Config"

@@ -246,7 +246,11 @@ def _as_scenario(options: dict[str, Any]) -> dict[str, Any]:
 def _list_of_infos(infos: dict[str, Any], n: int) -> list[dict[str, Any]]:
     """One dict for each environment from Gymnasium's dict of arrays (masks are `_name`)."""
     columns = {
-        name: _list_of_infos(value, n) if isinstance(value, dict) else value.tolist()
+        name: _list_of_infos(value, n)
+        if isinstance(value, dict)
+        else value.tolist()
+        if value.ndim == 1
+        else list(value)
         for name, value in infos.items()
         if not name.startswith("_")
     }

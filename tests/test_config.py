@@ -52,7 +52,9 @@ def test_every_field_of_the_document_is_a_field_of_the_dataclasses():
             if is_dataclass(value):
                 compare(value, document[f.name], f"{path}.{f.name}")
 
-    compare(Config(), PAPER, "config")
+    # Noise is written if there is some.
+    noisy = json.loads(config_json({"noise": {"motor_deg": 1.0}}))
+    compare(Config(), noisy, "config")
     # The numbers of grasping are among them.
     walked = dict(leaves(PAPER))
     for path in ("body.grip.arm_muscles.kp", "body.object.friction", "body.contact.stiffness_n_m"):
@@ -489,6 +491,7 @@ def test_a_config_with_no_room_for_a_grasp_says_so():
 
 
 def test_the_config_is_whole_in_asdict_of_a_profile():
-    assert dict(leaves(json.loads(json.dumps(asdict(Config.profile_named("icub")))))) == dict(
-        leaves(ICUB)
-    )
+    whole = json.loads(json.dumps(asdict(Config.profile_named("icub"))))
+    # A document leaves out noise while there is none.
+    assert not any(whole.pop("noise").values())
+    assert dict(leaves(whole)) == dict(leaves(ICUB))

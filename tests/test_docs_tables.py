@@ -206,7 +206,12 @@ def test_reward_terms_facts_and_outcomes_are_the_cores(task):
     assert f"`outcome` ({', '.join(spec.outcomes)})" in text
     assert set(spec.outcomes) < set(_core.outcomes())
     info = text.partition("## Info")[2].partition("##")[0]
-    assert re.findall(r"`(\w+)`", info) == [*spec.facts, "outcome", "reward_terms"]
+    assert re.findall(r"`(\w+)`", info) == [
+        *spec.facts,
+        "outcome",
+        "reward_terms",
+        *(measure.name for measure in spec.measures),
+    ]
 
 
 @each_task

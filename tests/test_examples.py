@@ -61,6 +61,14 @@ RUNS = {
         "--cases 40 --tests 20 --seeds 1 --movements 20",
         r"\| any \| \d\.\d{3} \| \d\.\d{3} \|",
     ),
+    "readouts.py": (
+        "--bodies icub --movements 20 --seeds 1 --tests 10",
+        r"\| icub \| obstacle x eye, Hebb, gain 20 \| peak \| 20 \| \d\.\d{3} \| \d\.\d{3} \|",
+    ),
+    "changed_body.py": (
+        "--movements 20 --repair 10 --ppo 512 --ppo-repair 512 --seeds 1 --tests 9 --changes none",
+        r"\| PPO \| none \| 512 \| \d\.\d{3} \| \d\.\d{3} \|",
+    ),
     "sac_her.py": ("--steps 4000 --cases 20", r"success 0\.\d+ \[0\.\d+, .+\]"),
 }
 ELSEWHERE = {"rllib_ppo.py"}

@@ -155,3 +155,60 @@ def test_any_false_value_stops(stop):
 def test_none_and_true_values_do_not(go_on):
     agent = HebbBabbling(REACH, quasi_static=True)
     assert agent.learn(40, callback=lambda _: go_on, callback_every=10).learnt == 40
+
+
+def test_an_agent_goes_on_in_a_body_that_changed(tmp_path):
+    changed = {"body": {"joints": {"elbow": {"upper_deg": 110.0}}}}
+    env = gym.make(REACH, config=changed)
+    before = HebbBabbling(REACH, seed=3).learn(60)
+    weights = before.weights
+    moved = before.continue_in(env)
+    assert_same(moved.weights, weights)
+    assert (moved.babbled, moved.learnt, moved.seed) == (before.babbled, 60, 3)
+    # It babbles on where it was, in the new body.
+    made = babble(env, before.babbled + 400, 3)[before.babbled :]
+    moved.learn(30)
+    kept = made.learnable & (made.babble < moved.babbled)
+    assert kept.sum() == 30
+    assert_same(before.weights, weights)
+    assert (moved.weights["weights"] != weights["weights"]).any()
+    moved.save(tmp_path / "agent")
+    stored = HebbBabbling.load(tmp_path / "agent")
+    assert stored.interface.task.config() == moved.interface.task.config()
+    assert_same(stored.learn(20).weights, moved.learn(20).weights)
+    cases = scenarios("table1", 20, config=changed)
+    assert evaluate(moved, cases=cases).cases == tuple(cases)
+    with pytest.raises(ConfigError, match="reaching"):
+        before.continue_in("BabbleGrasp-v0")
+
+
+def test_the_readout_is_a_setting_of_the_brain():
+    env = gym.make(REACH)
+    agent = HebbBabbling(env, seed=1, brain={"readout": "peak", "peak_radius": 1}).learn(40)
+    observation, _ = env.reset(seed=2)
+    (a,) = agent.recall(observation).values()
+    map_ = brain.PopulationMap(21, [0, 0], [1, 1])
+    peak = agent.decide(observation)
+    assert peak == pytest.approx(map_.read_out_peak(a.ravel(), 1), abs=1e-9)
+    mean = HebbBabbling(env, seed=1)
+    mean.weights = agent.weights
+    assert mean.brain["readout"] == "population"
+    assert mean.decide(observation) == pytest.approx(map_.read_out(a.ravel()), abs=1e-9)
+    with pytest.raises(ConfigError, match=r"readout.*mode.*population.*peak"):
+        HebbBabbling(env, brain={"readout": "mode"})
+
+
+def test_the_input_of_pairs_has_a_gain():
+    env = gym.make(REACH)
+    observation, _ = env.reset(seed=2)
+    plain, loud = (
+        HebbBabbling(env, "conjunctive", brain={"input_gain": gain}).perceive(observation)
+        for gain in (1.0, 20.0)
+    )
+    (plain,), (loud,) = plain.values(), loud.values()
+    assert plain.sum() == pytest.approx(1.0, abs=1e-5)
+    assert loud == pytest.approx(np.minimum(20 * plain, 1), rel=1e-6)
+    assert loud.max() == 1
+    for gain in (0, -1, 1e6, float("nan")):
+        with pytest.raises(ConfigError, match="input_gain"):
+            HebbBabbling(env, "conjunctive", brain={"input_gain": gain})

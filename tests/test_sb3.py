@@ -94,16 +94,16 @@ def test_equals_dummy_vec_env(env_id, kwargs, steps):
     batch.seed(7)
     singles.seed(7)
     assert same(batch.reset(), singles.reset())
-    assert batch.reset_infos == singles.reset_infos
+    assert_same(batch.reset_infos, singles.reset_infos)
     random = np.random.default_rng(0)
     ends = 0
     for _ in range(steps):
         actions = random.uniform(-1.0, 1.0, (4, *batch.action_space.shape)).astype(np.float32)
         ours, theirs = batch.step(actions), singles.step(actions)
         assert all(same(a, b) for a, b in zip(ours[:3], theirs[:3], strict=True))
-        assert batch.reset_infos == singles.reset_infos
+        assert_same(batch.reset_infos, singles.reset_infos)
         for our, their in zip(ours[3], theirs[3], strict=True):
-            assert without_clock(our) == without_clock(their)
+            assert_same(without_clock(our), without_clock(their))
             assert ("terminal_observation" in our) == ("terminal_observation" in their)
             if "terminal_observation" in our:
                 ends += 1

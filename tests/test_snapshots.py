@@ -42,6 +42,8 @@ def kinds(draw: st.DrawFn) -> tuple[str, dict[str, Any]]:
     task = task_of(env_id)
     engine = draw(st.sampled_from(["tree", "tree", "tree", "rapier"]))
     config: dict[str, Any] = {"profile": draw(st.sampled_from(["paper", "icub"]))}
+    if draw(st.booleans()):
+        config["noise"] = {"joint_deg": 1.0, "fovea": 0.1, "motor_deg": 2.0}
     extra: dict[str, Any] = {"max_episode_steps": draw(st.integers(1, 60))}
     if task == "grasp":
         extra["enclosure_reflex"] = draw(st.booleans())

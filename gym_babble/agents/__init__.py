@@ -4,6 +4,7 @@ from gym_babble.agents.babbling import Experiences, babble
 from gym_babble.agents.base import Agent
 from gym_babble.agents.goal_babbling import GoalBabbling
 from gym_babble.agents.hebb import HebbBabbling
+from gym_babble.agents.joints import Joints
 from gym_babble.agents.loading import load_agent
 from gym_babble.agents.neighbours import NearestNeighbours
 from gym_babble.agents.reference import Oracle, Random, ReflexOnly, Scripted
@@ -14,6 +15,7 @@ __all__ = [
     "Experiences",
     "GoalBabbling",
     "HebbBabbling",
+    "Joints",
     "NearestNeighbours",
     "Oracle",
     "Random",

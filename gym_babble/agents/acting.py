@@ -24,7 +24,7 @@ __all__ = ["MARK", "EnvArguments", "arguments_for", "carried", "marked"]
 MARK = "gym_babble_env"
 """Attribute of a model of stable-baselines3 that says where it learnt; its zip keeps it."""
 
-BINDING = ("control", "enclosure_reflex")
+BINDING = ("control", "enclosure_reflex", "reflex_releases")
 """Options that decide what an action does: an agent acts with its own."""
 
 PICTURE = ("record", "camera", "width", "height")

@@ -217,7 +217,11 @@ class HebbBabbling(Planner):
         return senses
 
     def untaught(self) -> HebbBabbling:
-        """A copy that has not babbled yet. It learns the same as this one has learnt."""
+        """A copy that has not babbled yet.
+
+        It learns the same as this one has learnt, unless this one went on in another environment
+        (`continue_in`).
+        """
         agent = copy(self)
         agent._core = _core.Learner(  # noqa: SLF001 - its own
             self._babbles_in.task,
@@ -227,6 +231,31 @@ class HebbBabbling(Planner):
             self.shuffled,
             self._threads,
         )
+        return agent
+
+    def continue_in(self, env: EnvLike) -> HebbBabbling:
+        """A copy that acts and learns on in another environment of the task.
+
+        For a body that changes after learning: the copy knows what this agent knows, and from now
+        on babbles in the body (and with the noise) of `env`. Its babbles are numbered on.
+
+        Args:
+            env: An id or an environment of the same task, of any config.
+
+        Raises:
+            ConfigError: It is not an environment of this agent's task, or the agent cannot act in
+                its control.
+        """
+        interface = interface_of(env)
+        if interface.entry.name != self._interface.entry.name:
+            raise ConfigError(
+                f"{env!r} is not a Babble environment for {self._interface.entry.title}"
+            )
+        agent = copy(self)
+        agent._interface = interface  # noqa: SLF001 - its own
+        agent._core = _core.Learner.load(self._core.save(), self._threads)  # noqa: SLF001 - its own
+        agent._core.check(interface.task)  # noqa: SLF001 - its own
+        agent._core.move_to(interface.task)  # noqa: SLF001 - its own
         return agent
 
     def to_bytes(self) -> bytes:
@@ -258,8 +287,8 @@ class HebbBabbling(Planner):
         Args:
             path: The file.
             env: Environment to act in; if not given, one of its task with the config that it
-                babbled with, in reaching with `pattern` control. With another config it acts, but
-                does not learn on.
+                babbled with, in reaching with `pattern` control. With another config it acts;
+                `continue_in` lets it learn on there.
             rule: The rule of your own that it learnt by, to learn on.
             threads: As for the class.
 
@@ -361,7 +390,8 @@ class HebbBabbling(Planner):
     def experiences(self) -> Experiences:
         """What it has learnt from, in its order, made again: it keeps none.
 
-        Percepts are with their own actions, also if it learns from shuffled pairs.
+        After `continue_in` all are made in the new environment. Percepts are with their own
+        actions, also if it learns from shuffled pairs.
         """
         seed, babbled, _ = self._core.counts()
         options = self._core.babbling()

@@ -36,6 +36,8 @@ def info(
         "action": asdict(spec.action),
         "reward_terms": spec.reward_terms,
         "outcomes": spec.outcomes,
+        "facts": spec.facts,
+        "measures": [asdict(measure) for measure in spec.measures],
         "control_hz": spec.control_hz,
         "options": [asdict(option) for option in task.options],
         "case_parts": [asdict(part) for part in task.case_parts],
@@ -56,7 +58,15 @@ def _tables(described: dict[str, Any]) -> list[Table]:
     for name in ("reward_terms", "outcomes"):
         facts.add_row(name, ", ".join(described[name]))
     senses, action = described["senses"], [described["action"]]
-    return [facts, _entries_table("senses", senses), _entries_table("action", action)]
+    tables = [facts, _entries_table("senses", senses), _entries_table("action", action)]
+    if described["measures"]:
+        heads = ["name", "parts", "unit", "meaning"]
+        measures = plain_table("\nnumbers in info", heads, left=len(heads))
+        for one in described["measures"]:
+            parts = ", ".join(one["labels"])
+            measures.add_row(one["name"], parts, one["unit"], one["description"])
+        tables.append(measures)
+    return tables
 
 
 def _registry_tables(task: registry.TaskEntry) -> list[Table]:

@@ -26,6 +26,10 @@ class BabbleGraspEnv(BabbleEnv):
     contact counts only while neither obstacle, upper arm nor forearm touches the object: an open
     hand can pin it against each of them, and a pinned object does not follow the hand.
 
+    With `support_stays=True` the support carries the object in both seconds and is never taken
+    away. A hold then lasts while the hand encloses the object and ends no episode, so the hand can
+    grasp and release over and over.
+
     ## Action space
 
     `Box(-1, 1, (4,), float32)`; its meaning depends on `control`:
@@ -54,9 +58,11 @@ class BabbleGraspEnv(BabbleEnv):
     | `touch` | 3 | 0 | 1 | normal force of palm, thumb, fingers on the object over 20 N |
 
     `"flat"` is the same in one Box(455,), in this order, which is that of Gymnasium's
-    `FlattenObservation`. `"goal"` is a Dict of `observation` (flat), `achieved_goal` (the object's
-    centre) and `desired_goal` (where it is to be carried), (x, y) [m]. `"retina"` is the senses and
-    the eye's image, `retina_size` × `retina_size` × 3, uint8.
+    `FlattenObservation`. `arm_touch=True` adds `touch_arm` (3): upper arm, forearm and the back of
+    the hand, as `touch` but at the end of the control step. `"goal"` is a Dict of `observation`
+    (flat), `achieved_goal` (the object's centre) and `desired_goal` (where it is to be carried),
+    (x, y) [m]. `"retina"` is the senses and the eye's image, `retina_size` × `retina_size` × 3,
+    uint8.
 
     ## Rewards
 
@@ -79,7 +85,8 @@ class BabbleGraspEnv(BabbleEnv):
 
     ## Episode end
 
-    - `success` (terminated): the hand has held the object without support for a second.
+    - `success` (terminated): the hand has held the object without support for a second. With
+      `support_stays=True`, at the time limit: the hand holds the object then.
     - `lost` (terminated): the hand has not held it, or the object is out of the arm's reach, or,
       with `obs="goal"`, was dropped after it had been held.
     - `collision` (terminated): arm or hand touches the obstacle, if one was asked for.
@@ -93,10 +100,11 @@ class BabbleGraspEnv(BabbleEnv):
     ## Info
 
     `is_success` (now), `ever_success` (in this episode), `reach` (any part of arm or hand has
-    touched the object), `palm_reach` (the palm has), `held` (the hand has held it without support),
+    touched the object), `palm_reach` (the palm has), `held` (the hand has held it without support;
+    on a support that stays: it holds it now), `in_sight` (the eye sees some of the object),
     `outcome` (running, success, collision, timeout, lost): a dict of booleans, one of them True;
-    `reward_terms`: a dict of numbers. All are booleans and numbers, so wrappers can make tensors of
-    them.
+    `reward_terms`: a dict of numbers; `object`: the centre of the object (3,), x, y, z from the
+    shoulder [m]. All are booleans and numbers, so wrappers can make tensors of them.
 
     ## Arguments
 
@@ -104,9 +112,10 @@ class BabbleGraspEnv(BabbleEnv):
     `region`: region `full` has an id of its own, `BabbleGraspFull-v0`.
 
     `reset(options=...)` takes `scenario` (see `gym_babble.scenarios`), or any of `start` (shoulder,
-    elbow) [rad], `object` (x, y), `diameter`, with `obs="goal"` `goal` (x, y), and `obstacle`
-    (x, y), (x, y, radius) or None [m]; unspecified
-    values are sampled, and there is no obstacle.
+    elbow) [rad], `object` (x, y), `diameter`, with `obs="goal"` `goal` (x, y), `obstacle`
+    (x, y), (x, y, radius) or None [m], and `in_hand`. Unspecified values are sampled, and there is
+    no obstacle. With `in_hand` True the object lies 1 mm before the palm of the open hand, wherever
+    `object` says; with False it does not, whatever `in_hand_starts` says.
     Options hold for the following resets until replaced; pass `{}` to clear them.
 
     ## Version history

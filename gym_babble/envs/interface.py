@@ -217,14 +217,18 @@ def outcome_of(info: Mapping[str, Any]) -> str:
     return next(name for name, is_so in outcome.items() if is_so)
 
 
-def _value(part: CasePart, value: Any) -> float | list[float] | None:
+def _value(part: CasePart, value: Any) -> bool | float | list[float] | None:
     """A part of a case as the core takes it; None is none.
 
     Raises:
-        ScenarioError: The value is not made of so many finite numbers.
+        ScenarioError: The value is not made of so many finite numbers, or not a truth value.
     """
     if value is None:
         return None
+    if not part.lengths:
+        if isinstance(value, bool | np.bool_):
+            return bool(value)
+        raise ScenarioError(f"{part.name} = {shown(value)} is not True or False")
     one = part.lengths == (0,)
     expected = "a number" if one else f"{' or '.join(map(str, part.lengths))} numbers"
     try:

@@ -21,12 +21,24 @@ SCENARIO_LABELS = ("protocol", "index", "config")
 
 
 def config_label(task: _core.Task, name: str) -> str:
-    """A name for the config of the task of that name: its profile, with a hash if it differs."""
+    """A name for the config of the task of that name: its profile, with a hash if it differs.
+
+    The diameters that are sampled do not count, as a case says its own.
+    """
     found = task.config()
     profile = str(json.loads(found)["profile"])
-    if found == _core.Task(name, config_json(profile), "{}").config():
+    usual = _core.Task(name, config_json(profile), "{}").config()
+    if found == usual or _without_sizes(found) == _without_sizes(usual):
         return profile
     return f"{profile}, changed ({hashlib.sha256(found.encode()).hexdigest()[:8]})"
+
+
+def _without_sizes(config: str) -> Any:
+    """A config as JSON types, without the diameters that are sampled."""
+    found = json.loads(config)
+    for name in ("diameters_m", "any_diameter_between"):
+        del found["grasp"][name]
+    return found
 
 
 def check_labels(

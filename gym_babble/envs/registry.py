@@ -55,7 +55,7 @@ class CasePart:
 
     name: str
     lengths: tuple[int, ...]
-    """How many numbers it can have; 0 stands for one plain number."""
+    """How many numbers it can have; 0 stands for one plain number, and none for True or False."""
     unit: str
     doc: str
 

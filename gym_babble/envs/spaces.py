@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from gym_babble import _core
 
 
-__all__ = ["Entry", "Spec", "as_actions", "observation_space"]
+__all__ = ["Entry", "Measure", "Spec", "as_actions", "observation_space"]
 
 
 @dataclass(frozen=True)
@@ -41,6 +41,16 @@ class Entry:
 
 
 @dataclass(frozen=True)
+class Measure:
+    """A named group of numbers that `info` shows."""
+
+    name: str
+    labels: tuple[str, ...]
+    unit: str
+    description: str
+
+
+@dataclass(frozen=True)
 class Spec:
     """The core's description of observations and actions."""
 
@@ -49,6 +59,7 @@ class Spec:
     action: Entry
     reward_terms: tuple[str, ...]
     facts: tuple[str, ...]
+    measures: tuple[Measure, ...]
     outcomes: tuple[str, ...]
     max_episode_steps: int
     control_hz: float
@@ -68,6 +79,9 @@ class Spec:
             action=_entry(raw["action"]),
             reward_terms=tuple(raw["reward_terms"]),
             facts=tuple(raw["facts"]),
+            measures=tuple(
+                Measure(**{**one, "labels": tuple(one["labels"])}) for one in raw["measures"]
+            ),
             outcomes=tuple(raw["outcomes"]),
             max_episode_steps=raw["max_episode_steps"],
             control_hz=raw["control_hz"],
@@ -76,6 +90,12 @@ class Spec:
                 for entry, start, end in zip(senses, starts, ends, strict=True)
             ),
         )
+
+    def measured(self, numbers: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+        """The measures by name from all of their numbers (..., n)."""
+        ends = np.cumsum([len(one.labels) for one in self.measures])[:-1]
+        parts = np.split(numbers, ends, axis=-1)
+        return {one.name: part for one, part in zip(self.measures, parts, strict=True)}
 
     @property
     def flat(self) -> spaces.Box:

@@ -294,6 +294,8 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
             info["outcome"] = {name: bool(last["outcome"][k] == code) for name, code in codes}
             terms = last["terms"][k].tolist()
             info["reward_terms"] = dict(zip(spec.reward_terms, terms, strict=True))
+            if spec.measures:
+                info |= spec.measured(last["measures"][k])
             final = {
                 "final_obs": self._interface.observation(
                     last["senses"][k], [goal[k] for goal in goals], retina

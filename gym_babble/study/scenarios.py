@@ -12,6 +12,7 @@ from gym_babble.checks import (
     check_seed,
     check_threads,
     check_whole,
+    plain,
     shown,
 )
 from gym_babble.config import ConfigLike, config_json
@@ -20,6 +21,8 @@ from gym_babble.envs.registry import TASKS
 from gym_babble.errors import ConfigError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from gym_babble.envs.registry import Protocol
 
 __all__ = [
@@ -92,6 +95,7 @@ def scenarios(
     *,
     split: str | None = None,
     goal: bool = False,
+    diameters: Sequence[float] | None = None,
     config: ConfigLike = "paper",
     threads: int | None = 1,
 ) -> list[Scenario]: ...
@@ -105,6 +109,7 @@ def scenarios(
     *,
     split: str | None = None,
     goal: bool = False,
+    diameters: Sequence[float] | None = None,
     config: ConfigLike = "paper",
     threads: int | None = 1,
 ) -> list[GraspScenario]: ...
@@ -118,6 +123,7 @@ def scenarios(
     *,
     split: str | None = None,
     goal: bool = False,
+    diameters: Sequence[float] | None = None,
     config: ConfigLike = "paper",
     threads: int | None = 1,
 ) -> list[Scenario] | list[GraspScenario]: ...
@@ -130,6 +136,7 @@ def scenarios(
     *,
     split: str | None = None,
     goal: bool = False,
+    diameters: Sequence[float] | None = None,
     config: ConfigLike = "paper",
     threads: int | None = 1,
 ) -> Any:
@@ -146,6 +153,8 @@ def scenarios(
         split: Of a random protocol "test" (if not given), or "validation" for choosing settings;
             they share no case, for any seed.
         goal: In grasping, for the goal form: each case has a goal, where to carry the object.
+        diameters: In grasping, diameters of the objects [m]; those of the config if not given. Of a
+            random protocol each case has one of them, of a fixed list each position has all.
         config: Body and task, as for the environments.
         threads: Threads to use; all processors for None. The cases do not depend on it.
 
@@ -165,6 +174,10 @@ def scenarios(
         if "goal" not in {part.name for part in entry.case_parts}:
             raise ConfigError(f"goal = True: cases of {entry.title} have no goal of their own")
         options |= {"obs": "goal", "reward": "sparse"}
+    if diameters is not None:
+        if "diameters" not in entry.defaults:
+            raise ConfigError(f"diameters = {shown(diameters)}: {entry.title} has no objects")
+        options["diameters"] = plain(diameters, "diameters")
     task = _core.Task(entry.name, config_json(config), json.dumps(options))
     many, stream, purpose = int(n or 1_000), int(seed or 0), split or "test"
     cases = task.cases(protocol, many, stream, purpose, check_threads(threads))

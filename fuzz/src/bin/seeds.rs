@@ -8,7 +8,7 @@ use std::sync::Arc;
 use babble_agent::{
     GraspBrain, GraspNetwork, Learner, Network, ReachBabbling, ReachBrain, ReachNetwork, Variant,
 };
-use babble_env::tasks::grasp::GraspRequest;
+use babble_env::tasks::grasp::{GraspRequest, ObjectPlace};
 use babble_env::{
     Autoreset, Batch, Config, EnvError, GraspOptions, GraspTask, ReachOptions, ReachTask, Task,
 };
@@ -37,7 +37,7 @@ fn main() -> Result<()> {
         let start = [0.2, 0.8];
         let near = GraspRequest {
             start: Some(start),
-            object: Some(task.before_palm(start, 0.02, 0.006)),
+            object: ObjectPlace::At(task.before_palm(start, 0.02, 0.006)),
             diameter: Some(0.04),
             ..GraspRequest::default()
         };

@@ -114,6 +114,12 @@ pub trait AnyLearner: Any + fmt::Debug + Send + Sync {
     /// As [`Learner::shuffle`].
     fn shuffle(&mut self);
 
+    /// As [`Learner::move_to`].
+    ///
+    /// # Errors
+    /// [`AgentError::Config`] for another task.
+    fn move_to(&mut self, task: &Arc<dyn AnyTask>) -> Result<(), AgentError>;
+
     /// How its babbles are simulated, as JSON.
     fn options(&self) -> Result<Value, AgentError>;
 
@@ -188,6 +194,12 @@ impl<N: Network> AnyLearner for Learner<N> {
 
     fn shuffle(&mut self) {
         Self::shuffle(self);
+    }
+
+    fn move_to(&mut self, task: &Arc<dyn AnyTask>) -> Result<(), AgentError> {
+        let task = downcast::<N::Task>(task).ok_or_else(other_task)?;
+        Self::move_to(self, &task);
+        Ok(())
     }
 
     fn options(&self) -> Result<Value, AgentError> {

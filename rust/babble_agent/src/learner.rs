@@ -12,7 +12,7 @@ use crate::rule::RuleOfOnesOwn;
 use crate::tensors;
 
 /// Version of the files.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 /// Babbles that are remembered until they are learnt from together.
 const BABBLES: usize = 128;
 /// Experiences that are encoded and learnt together.
@@ -109,6 +109,11 @@ impl<N: Network> Learner<N> {
     #[must_use]
     pub const fn config(&self) -> &Config {
         &self.config
+    }
+
+    /// Goes on in the config of another task: it babbles and learns there from now on.
+    pub fn move_to(&mut self, task: &N::Task) {
+        self.config = task.config().clone();
     }
 
     /// Babbles until `n` more babbles can be learnt from, and learns from these.

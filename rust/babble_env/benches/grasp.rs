@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 
-use babble_env::tasks::grasp::{GraspRequest, Grip};
+use babble_env::tasks::grasp::{GraspRequest, Grip, ObjectPlace};
 use babble_env::{
     Config, Control, Episode, GraspOptions, GraspTask, Purpose, Stop, Stream, Task, snapshot,
 };
@@ -33,7 +33,7 @@ fn held(task: &GraspTask) -> Episode<GraspTask> {
     let object = [0.05, 0.25];
     let request = GraspRequest {
         start: Some([-0.5, 0.6]),
-        object: Some(object),
+        object: ObjectPlace::At(object),
         diameter: Some(0.05),
         ..GraspRequest::default()
     };
@@ -95,7 +95,7 @@ fn resets(c: &mut Criterion) {
         "grasp: reset with a given case",
         GraspRequest {
             start: Some(case.start),
-            object: Some(case.object),
+            object: ObjectPlace::At(case.object),
             diameter: Some(case.diameter),
             ..GraspRequest::default()
         },

@@ -14,6 +14,8 @@ use crate::near;
 pub enum CaseValue {
     /// Explicitly none: no obstacle, or a value to be sampled.
     Absent,
+    /// True or false.
+    Flag(bool),
     /// One number.
     Number(f64),
     /// A position, a posture, or a circle (x, y, radius).
@@ -24,6 +26,7 @@ impl fmt::Display for CaseValue {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Absent => f.write_str("none"),
+            Self::Flag(flag) => write!(f, "{flag}"),
             Self::Number(number) => write!(f, "{number}"),
             Self::Numbers(numbers) => write!(f, "{numbers:?}"),
         }
@@ -47,7 +50,8 @@ impl<const N: usize> From<[f64; N]> for CaseValue {
 pub struct CasePart {
     /// Name of the part.
     pub name: &'static str,
-    /// How many numbers it has: one length, or several. A length of 0 stands for one plain number.
+    /// How many numbers it has: one length, or several. A length of 0 stands for one plain number, and
+    /// no length for true or false.
     pub lengths: &'static [usize],
     /// Unit of the numbers.
     pub unit: &'static str,
@@ -103,7 +107,7 @@ impl CaseValues {
     pub fn numbers<const N: usize>(&self, name: &str) -> Option<[f64; N]> {
         match self.get(name)? {
             CaseValue::Numbers(numbers) => numbers[..].try_into().ok(),
-            CaseValue::Absent | CaseValue::Number(_) => None,
+            CaseValue::Absent | CaseValue::Flag(_) | CaseValue::Number(_) => None,
         }
     }
 
@@ -112,7 +116,16 @@ impl CaseValues {
     pub fn number(&self, name: &str) -> Option<f64> {
         match self.get(name)? {
             CaseValue::Number(number) => Some(*number),
-            CaseValue::Absent | CaseValue::Numbers(_) => None,
+            CaseValue::Absent | CaseValue::Flag(_) | CaseValue::Numbers(_) => None,
+        }
+    }
+
+    /// Whether a part is true; none where it is not given or absent.
+    #[must_use]
+    pub fn flag(&self, name: &str) -> Option<bool> {
+        match self.get(name)? {
+            CaseValue::Flag(flag) => Some(*flag),
+            CaseValue::Absent | CaseValue::Number(_) | CaseValue::Numbers(_) => None,
         }
     }
 
@@ -124,13 +137,14 @@ impl CaseValues {
 
 impl CasePart {
     fn check(&self, value: &CaseValue) -> Result<(), EnvError> {
-        let found = match value {
-            CaseValue::Absent => return Ok(()),
-            CaseValue::Number(_) => 0,
-            CaseValue::Numbers(numbers) => numbers.len().max(1),
+        let fits = match value {
+            CaseValue::Absent => true,
+            CaseValue::Flag(_) => self.lengths.is_empty(),
+            CaseValue::Number(_) => self.lengths.contains(&0),
+            CaseValue::Numbers(numbers) => {
+                !numbers.is_empty() && self.lengths.contains(&numbers.len())
+            }
         };
-        let fits = self.lengths.contains(&found)
-            && !matches!(value, CaseValue::Numbers(numbers) if numbers.is_empty());
         if fits {
             return Ok(());
         }
@@ -142,6 +156,9 @@ impl CasePart {
     }
 
     fn expected(&self) -> String {
+        if self.lengths.is_empty() {
+            return "True or False".to_owned();
+        }
         let count = |&n: &usize| match n {
             0 => "a number".to_owned(),
             n => format!("{n} numbers"),

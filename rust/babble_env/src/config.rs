@@ -12,6 +12,7 @@ use serde_json::Value;
 
 use crate::document;
 use crate::error::EnvError;
+use crate::noise::NoiseConfig;
 use crate::tasks::grasp::config::GraspConfig;
 use crate::tasks::reach::config::ReachConfig;
 
@@ -30,6 +31,9 @@ pub struct Config {
     pub reach: ReachConfig,
     /// The grasping task's numbers.
     pub grasp: GraspConfig,
+    /// Noise of senses and muscles; not written while there is none.
+    #[serde(default, skip_serializing_if = "NoiseConfig::is_off")]
+    pub noise: NoiseConfig,
 }
 
 impl Config {
@@ -54,6 +58,7 @@ impl Config {
             body,
             reach,
             grasp,
+            noise: NoiseConfig::default(),
         })
     }
 
@@ -103,7 +108,9 @@ impl Config {
         };
         let base = Self::profile(profile)?;
         let mut value =
-            serde_json::to_value(base).map_err(|error| document::fault("document", &error))?;
+            serde_json::to_value(&base).map_err(|error| document::fault("document", &error))?;
+        value["noise"] = serde_json::to_value(base.noise)
+            .map_err(|error| document::fault("document", &error))?;
         merge(&mut value, overrides, &mut Vec::new())?;
         let config: Self =
             serde_path_to_error::deserialize(value).map_err(|error| EnvError::Config {
@@ -120,6 +127,7 @@ impl Config {
     /// [`EnvError::Config`] or [`EnvError::Body`] with field, value and bound.
     pub fn validate(&self) -> Result<(), EnvError> {
         self.body.validate()?;
+        self.noise.validate()?;
         self.grasp.validate()?;
         self.reach.validate(&self.body.muscles)
     }

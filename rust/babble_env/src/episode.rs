@@ -6,7 +6,7 @@ use crate::executor::Stop;
 use crate::outcome::Outcome;
 use crate::progress::{EVER_SUCCESS, IS_SUCCESS, Lifecycle, Phase, Progress};
 use crate::stream::Stream;
-use crate::task::{MAX_FACTS, MAX_TERMS, Task};
+use crate::task::{MAX_FACTS, MAX_MEASURES, MAX_TERMS, Task};
 
 /// One episode: its state and what follows from it.
 #[derive(Debug)]
@@ -43,6 +43,8 @@ pub struct EpisodeInfo {
     pub outcome: Outcome,
     /// What is true of it in the order of the spec, then false.
     pub facts: [bool; MAX_FACTS],
+    /// Its measures in the order of the spec, then zeros.
+    pub measures: [f64; MAX_MEASURES],
 }
 
 impl<T: Task> Episode<T> {
@@ -168,9 +170,12 @@ impl<T: Task> Episode<T> {
         facts[IS_SUCCESS] = progress.is_success;
         facts[EVER_SUCCESS] = progress.ever_success;
         task.facts(&self.state, &mut facts[EVER_SUCCESS + 1..]);
+        let mut measures = [0.0; MAX_MEASURES];
+        task.measures(&self.state, &mut measures);
         EpisodeInfo {
             outcome: progress.outcome,
             facts,
+            measures,
         }
     }
 }

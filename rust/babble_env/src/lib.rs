@@ -14,6 +14,7 @@ mod executor;
 pub mod guarded;
 mod named_enum;
 mod near;
+pub mod noise;
 pub mod option_spec;
 pub mod options;
 mod outcome;

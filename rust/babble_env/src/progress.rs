@@ -64,6 +64,8 @@ pub struct Lifecycle<R> {
 pub struct Ending {
     /// The goal form: episodes run to their time limit, whatever happens.
     pub goal: bool,
+    /// A success does not end an episode.
+    pub goes_on: bool,
     /// An episode is one step.
     pub single_step: bool,
     /// Time limit in control steps.
@@ -83,7 +85,7 @@ impl Ending {
         let failed = progress.outcome.is_failure();
         progress.is_success = done && !failed;
         progress.ever_success |= progress.is_success;
-        let decided = !self.goal && (failed || progress.is_success);
+        let decided = !self.goal && (failed || (progress.is_success && !self.goes_on));
         let terminated = self.single_step || decided;
         let truncated = !self.single_step && progress.steps >= self.max_steps;
         if !failed {

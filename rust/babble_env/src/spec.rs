@@ -22,6 +22,19 @@ pub struct Entry {
     pub description: &'static str,
 }
 
+/// A named group of numbers that an episode shows in its info.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Measure {
+    /// Name of the group.
+    pub name: &'static str,
+    /// What each number is.
+    pub labels: &'static [&'static str],
+    /// Unit of the numbers.
+    pub unit: &'static str,
+    /// What the group tells, and the frame of a position.
+    pub description: &'static str,
+}
+
 /// Everything a face needs to build an environment's spaces and docs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Spec {
@@ -37,6 +50,9 @@ pub struct Spec {
     /// Names of what is true or false of an episode, in their order; at most
     /// [`crate::task::MAX_FACTS`].
     pub facts: &'static [&'static str],
+    /// Numbers that the info of an episode shows, in their order; together at most
+    /// [`crate::task::MAX_MEASURES`].
+    pub measures: &'static [Measure],
     /// Names of the outcomes that an episode can have.
     pub outcomes: Vec<&'static str>,
     /// Time limit in control steps.
@@ -46,6 +62,12 @@ pub struct Spec {
 }
 
 impl Spec {
+    /// Numbers in all measures.
+    #[must_use]
+    pub fn measures_len(&self) -> usize {
+        self.measures.iter().map(|one| one.labels.len()).sum()
+    }
+
     /// Numbers in a goal; 0 without goals.
     #[must_use]
     pub fn goal_len(&self) -> usize {

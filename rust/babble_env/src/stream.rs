@@ -1,5 +1,6 @@
 //! Portable streams of random numbers.
 
+use std::f64::consts::TAU;
 use std::str::FromStr;
 
 use rand::{RngExt, SeedableRng};
@@ -23,6 +24,10 @@ pub enum Purpose {
     Test = 4,
     /// Random choices of an agent.
     Policy = 5,
+    /// Errors of the muscles in a control step.
+    Muscles = 6,
+    /// Errors of the senses in a control step.
+    Senses = 7,
 }
 
 impl FromStr for Purpose {
@@ -71,6 +76,18 @@ impl Stream {
     /// Uniform in [low, high).
     pub fn uniform(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.0.random::<f64>()
+    }
+
+    /// Normal with mean 0 and standard deviation 1 (Box and Muller 1958).
+    pub fn normal(&mut self) -> f64 {
+        let radius = libm::sqrt(-2.0 * libm::log(1.0 - self.uniform(0.0, 1.0)));
+        radius * libm::cos(self.uniform(0.0, TAU))
+    }
+
+    /// A stream of its own for a purpose, which the next number decides.
+    #[must_use]
+    pub(crate) fn branch(&mut self, purpose: Purpose) -> Self {
+        Self::new(purpose, self.0.random(), 0)
     }
 }
 

@@ -23,6 +23,8 @@ use crate::stream::{Purpose, Stream};
 pub const MAX_TERMS: usize = 4;
 /// Most facts of an episode.
 pub const MAX_FACTS: usize = 8;
+/// Most numbers in the measures of an episode.
+pub const MAX_MEASURES: usize = 3;
 
 /// A task: its params, which never change, and all that [`crate::Episode`] asks of it.
 pub trait Task: fmt::Debug + Send + Sync + Sized + 'static {
@@ -148,6 +150,11 @@ pub trait Task: fmt::Debug + Send + Sync + Sized + 'static {
 
     /// Writes the facts that follow [`crate::progress::SUCCESS_FACTS`] in the spec.
     fn facts(&self, state: &Self::State, out: &mut [bool]) {
+        let _ = (state, out);
+    }
+
+    /// Writes the measures, in the order of the spec.
+    fn measures(&self, state: &Self::State, out: &mut [f64; MAX_MEASURES]) {
         let _ = (state, out);
     }
 

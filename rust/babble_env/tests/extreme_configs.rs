@@ -4,7 +4,7 @@ mod playing;
 
 use std::sync::Arc;
 
-use babble_env::tasks::grasp::GraspRequest;
+use babble_env::tasks::grasp::{GraspRequest, ObjectPlace};
 use babble_env::tasks::reach::{CaseRequest, ObstacleRequest};
 use babble_env::{Autoreset, Batch, Config, Control, EnvError, GraspTask, ReachTask, Task};
 use playing::control;
@@ -105,7 +105,7 @@ proptest! {
         let (start, diameter) = ([0.2, 0.8], task.config.grasp.diameters_m[0]);
         let near = GraspRequest {
             start: Some(start),
-            object: Some(task.before_palm(start, diameter / 2.0, 0.006)),
+            object: ObjectPlace::At(task.before_palm(start, diameter / 2.0, 0.006)),
             diameter: Some(diameter),
             ..GraspRequest::default()
         };

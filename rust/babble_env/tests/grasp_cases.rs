@@ -3,7 +3,7 @@
 
 mod playing;
 
-use babble_env::tasks::grasp::{GraspCase, GraspRequest, InHand, Region, protocol};
+use babble_env::tasks::grasp::{GraspCase, GraspRequest, InHand, ObjectPlace, Region, protocol};
 use babble_env::{
     Autoreset, Batch, Config, Control, EnvError, Executor, GraspOptions, GraspTask, Purpose,
     Reward, Stop, Stream,
@@ -142,7 +142,11 @@ fn requests_are_kept() {
         let pick = |bit: u32| mask & (1 << bit) != 0;
         let request = GraspRequest {
             start: pick(0).then_some(model.start),
-            object: pick(1).then_some(model.object),
+            object: if pick(1) {
+                ObjectPlace::At(model.object)
+            } else {
+                ObjectPlace::Sampled
+            },
             diameter: pick(2).then_some(model.diameter),
             goal: pick(3).then_some([0.1, 0.2]),
             obstacle: pick(4).then_some(aside),
@@ -151,7 +155,12 @@ fn requests_are_kept() {
         for _ in 0..3 {
             let case = env.state(0).unwrap().case;
             assert!(request.start.is_none_or(|start| start == case.start));
-            assert!(request.object.is_none_or(|object| object == case.object));
+            assert!(
+                request
+                    .object
+                    .point()
+                    .is_none_or(|object| object == case.object)
+            );
             assert!(
                 request
                     .diameter
@@ -236,18 +245,18 @@ fn impossible(task: &GraspTask) -> Vec<(&'static str, GraspRequest)> {
     let start = [0.2, 0.8];
     let clear = GraspRequest {
         start: Some(start),
-        object: Some([-0.2, 0.15]),
+        object: ObjectPlace::At([-0.2, 0.15]),
         ..GraspRequest::default()
     };
     // One millimetre from where an object lies in the hand.
-    let near_palm = Some(task.before_palm(start, 0.03, 0.002));
+    let near_palm = ObjectPlace::At(task.before_palm(start, 0.03, 0.002));
     let on_arm = task.before_palm(start, 0.0, 0.0);
     let mut all = Vec::new();
     for object in [[0.5, 0.0], [f64::NAN, 0.1], [0.1, f64::INFINITY]] {
         all.push((
             "object",
             GraspRequest {
-                object: Some(object),
+                object: ObjectPlace::At(object),
                 ..clear
             },
         ));
@@ -347,7 +356,7 @@ fn impossible_cases_are_named() {
 fn a_search_for_cases_ends() {
     let mut env = asked(grasp(GraspOptions::default()), 2, GraspRequest::default());
     let before = bits(&env);
-    let object = Some([0.05, 0.0]);
+    let object = ObjectPlace::At([0.05, 0.0]);
     let (at_shoulder, diameter) = (
         GraspRequest {
             object,

@@ -5,7 +5,7 @@ mod playing;
 use std::sync::Arc;
 
 use babble_body::robot::{MuscleCommand, MuscleCommands, World, towards};
-use babble_env::tasks::grasp::{GraspRequest, GraspState, Grip, at};
+use babble_env::tasks::grasp::{GraspRequest, GraspState, Grip, ObjectPlace, at};
 use babble_env::{Batch, Control, GraspOptions, GraspTask, Outcome};
 use nalgebra::Vector2;
 use playing::grasping::{
@@ -147,7 +147,7 @@ fn the_reflex_waits_for_the_palm() {
         let fingertip = Vector2::new(task.robot.palm_centre() + 0.07, 0.02 + 0.012);
         let object = task.arm.with_tip(fingertip).fingertip([0.2, 0.8]);
         let request = GraspRequest {
-            object: Some(object.into()),
+            object: ObjectPlace::At(object.into()),
             ..before_the_palm(&task, 0.024)
         };
         let mut env = asked(task.clone(), 0, request);
@@ -312,7 +312,7 @@ fn controls_act_on_their_quantity() {
         let task = grasp(with_control(control));
         let start = GraspRequest {
             start: Some([0.0, 1.0]),
-            object: Some([0.0, 0.32]),
+            object: ObjectPlace::At([0.0, 0.32]),
             ..of_size(0.024)
         };
         let mut env = asked(task.clone(), 0, start);
@@ -353,7 +353,7 @@ fn in_the_way(task: &GraspTask) -> GraspRequest {
     let hand = task.before_palm([0.7, 0.8], 0.0, 0.02);
     GraspRequest {
         start: Some([0.2, 0.8]),
-        object: Some([-0.2, 0.15]),
+        object: ObjectPlace::At([-0.2, 0.15]),
         diameter: Some(0.024),
         obstacle: Some(obstacle(hand, 0.02)),
         ..GraspRequest::default()

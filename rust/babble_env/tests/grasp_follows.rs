@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use babble_body::Obstacle;
 use babble_body::robot::{Posture, Touch, towards};
-use babble_env::tasks::grasp::{GraspRequest, GraspState, Grip};
+use babble_env::tasks::grasp::{GraspRequest, GraspState, Grip, ObjectPlace};
 use babble_env::{Autoreset, Batch, Control, GraspTask, Purpose, Stream};
 use playing::grasping::{asking_for, grasp_with, obstacle, play, with_control};
 use playing::{ended, record, seeded};
@@ -71,7 +71,7 @@ fn before_an_obstacle(task: &GraspTask, object: [f64; 2], shift: f64) -> (GraspR
     let arm = task.grasp_posture(beside(arm, object, -shift, 0.0), radius);
     let request = GraspRequest {
         start: Some([arm.unwrap()[0] - 1.0, 0.6]),
-        object: Some(object),
+        object: ObjectPlace::At(object),
         diameter: Some(2.0 * radius),
         obstacle: Some(obstacle(centre, wide)),
         ..GraspRequest::default()
@@ -124,7 +124,7 @@ fn an_object_pinned_against_the_upper_arm_is_not_held() {
         for diameter in [0.08, 0.1, 0.13] {
             let request = GraspRequest {
                 start: Some(start),
-                object: Some(task.before_palm(start, diameter / 2.0, 0.007)),
+                object: ObjectPlace::At(task.before_palm(start, diameter / 2.0, 0.007)),
                 diameter: Some(diameter),
                 ..GraspRequest::default()
             };
@@ -149,7 +149,7 @@ fn an_object_that_the_support_carries_is_not_held() {
         let object = beside(start, task.before_palm(start, 0.03, 0.007), 0.03, 0.0);
         let request = GraspRequest {
             start: Some(start),
-            object: Some(object),
+            object: ObjectPlace::At(object),
             diameter: Some(0.06),
             ..GraspRequest::default()
         };

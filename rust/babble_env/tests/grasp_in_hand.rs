@@ -3,7 +3,7 @@
 mod playing;
 
 use babble_body::robot::Posture;
-use babble_env::tasks::grasp::{GraspCase, GraspRequest, InHand, protocol};
+use babble_env::tasks::grasp::{GraspCase, GraspRequest, InHand, ObjectPlace, protocol};
 use babble_env::{
     Config, EnvError, Executor, GraspOptions, GraspTask, Outcome, Purpose, Stop, Stream,
 };
@@ -62,7 +62,7 @@ fn it_begins_as_a_babble_does() {
                 0,
                 GraspRequest {
                     start: Some(case.start),
-                    object: Some(case.object),
+                    object: ObjectPlace::At(case.object),
                     diameter: Some(case.diameter),
                     ..GraspRequest::default()
                 },
@@ -126,7 +126,7 @@ fn given_places_are_kept() {
         ..GraspRequest::default()
     };
     let object = GraspRequest {
-        object: Some([0.05, 0.25]),
+        object: ObjectPlace::At([0.05, 0.25]),
         ..GraspRequest::default()
     };
     for seed in 0..50 {
@@ -148,4 +148,55 @@ fn other_shares_are_refused() {
             })
         ));
     }
+}
+
+/// An object that is asked to be in the hand lies at the palm, from any start and of any size that are
+/// asked for too; one that is asked to be apart never does. Catches a request that the share of starts
+/// overrules, a start that is drawn anew, and an answer that moves the cases of others.
+#[test]
+fn the_hand_can_be_asked_for() {
+    for share in [0.0, 1.0] {
+        for task in tasks(with_share(share)) {
+            for seed in 0..50 {
+                let draw = |request: GraspRequest| {
+                    let mut stream = Stream::new(Purpose::Test, seed, 0);
+                    request.draw(&task, &mut stream, &Stop::default()).unwrap()
+                };
+                let of = |object| GraspRequest {
+                    object,
+                    ..GraspRequest::default()
+                };
+                assert!(in_hand(&task, &draw(of(ObjectPlace::InHand))));
+                assert!(!in_hand(&task, &draw(of(ObjectPlace::Apart))));
+                let case = draw(GraspRequest {
+                    start: Some([0.1, 0.6]),
+                    diameter: Some(0.05),
+                    ..of(ObjectPlace::InHand)
+                });
+                assert!(in_hand(&task, &case));
+                assert_eq!((case.start, case.diameter), ([0.1, 0.6], 0.05));
+            }
+        }
+    }
+}
+
+/// A hand that cannot hold the object asked for, as the upper arm is in the way, is refused at once.
+#[test]
+fn a_hand_without_room_is_refused() {
+    let task = &tasks(with_share(0.0))[0];
+    let request = GraspRequest {
+        start: Some([0.0, task.arm.upper_limit[1]]),
+        object: ObjectPlace::InHand,
+        diameter: Some(0.2),
+        ..GraspRequest::default()
+    };
+    let drawn = request.draw(
+        task,
+        &mut Stream::new(Purpose::Test, 0, 0),
+        &Stop::default(),
+    );
+    assert!(
+        matches!(drawn, Err(EnvError::Case { what: "object", .. })),
+        "{drawn:?}"
+    );
 }

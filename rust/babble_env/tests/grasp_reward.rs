@@ -3,7 +3,7 @@
 mod playing;
 
 use babble_env::progress::Phase;
-use babble_env::tasks::grasp::{FACTS, GraspRequest, GraspState, Grip, at};
+use babble_env::tasks::grasp::{FACTS, GraspRequest, GraspState, Grip, ObjectPlace, at};
 use babble_env::{Autoreset, Batch, Control, GraspOptions, GraspTask, Outcome, Reward, Task};
 use nalgebra::Vector3;
 use playing::grasping::{
@@ -178,7 +178,7 @@ fn goal_reward_is_the_steps_reward() {
         let near = before_the_palm(&task, 0.04);
         // Where it lies, and 8 and 80 mm further.
         for (shift, seed) in [(0.0, 0), (0.008, 1), (0.08, 2)] {
-            let [x, y] = near.object.unwrap();
+            let [x, y] = near.object.point().unwrap();
             let goal = [x - shift, y];
             let request = GraspRequest {
                 goal: Some(goal),
@@ -284,7 +284,7 @@ fn a_collision_freezes_the_goal_form() {
         let way = obstacle(task.before_palm([0.5, 0.8], 0.0, 0.02), 0.02);
         let request = GraspRequest {
             start: Some([0.2, 0.8]),
-            object: Some([-0.2, 0.15]),
+            object: ObjectPlace::At([-0.2, 0.15]),
             goal: Some([-0.2, 0.15]),
             obstacle: Some(way),
             ..GraspRequest::default()
@@ -320,7 +320,7 @@ fn a_loss_freezes_the_goal_form() {
 fn what_is_dropped_is_lost() {
     let task = grasp(goal_form(Control::Posture));
     let near = before_the_palm(&task, 0.04);
-    let [x, y] = near.object.unwrap();
+    let [x, y] = near.object.point().unwrap();
     let goal = Some([x - 0.08, y]);
     let mut env = asked(task.clone(), 0, GraspRequest { goal, ..near });
     let (mut held, mut lost) = (false, 0);

@@ -4,7 +4,9 @@ mod playing;
 
 use babble_body::visual;
 use babble_env::batch::Record;
-use babble_env::tasks::grasp::{FOVEA_NEURONS, GraspRequest, GraspState, Region, at, see};
+use babble_env::tasks::grasp::{
+    FOVEA_NEURONS, GraspRequest, GraspState, ObjectPlace, Region, at, see,
+};
 use babble_env::{Autoreset, Config, Control, GraspOptions, GraspTask};
 use babble_eye::{Gaze, Material, Primitive, Shape, foveal_shape, red_centroid};
 use nalgebra::{Matrix3, Vector3};
@@ -266,7 +268,7 @@ fn a_hidden_object_leaves_the_eye_where_it_is() {
     // From the object 67 mm towards the eye, which is at (0, 0.1, 0.25).
     let request = GraspRequest {
         start: Some([-1.0, 0.5]),
-        object: Some([-0.2, 0.15]),
+        object: ObjectPlace::At([-0.2, 0.15]),
         diameter: Some(0.024),
         obstacle: Some(obstacle([-0.135, 0.134], 0.05)),
         ..GraspRequest::default()

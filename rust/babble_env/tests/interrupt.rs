@@ -106,6 +106,7 @@ impl Task for Slow {
             action: entry("action", vec![]),
             reward_terms: &[],
             facts: &[],
+            measures: &[],
             outcomes: vec![],
             max_episode_steps: 3,
             control_hz: 1.0,
@@ -158,6 +159,7 @@ impl Task for Slow {
     fn ending(&self) -> Ending {
         Ending {
             goal: false,
+            goes_on: false,
             single_step: false,
             max_steps: 1_000,
         }

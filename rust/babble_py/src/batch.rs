@@ -7,6 +7,7 @@ use babble_env::EnvError;
 use babble_env::batch::Record;
 use babble_env::case::CasePart;
 use babble_env::picture::View;
+use babble_env::task::MAX_MEASURES;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -39,6 +40,8 @@ pub(crate) struct Batch {
     outcomes: Vec<InfoKey>,
     /// The outcomes, in the same order.
     outcome_names: Vec<&'static str>,
+    /// Names of the measures, and how many numbers each has.
+    measures: Vec<(InfoKey, usize)>,
 }
 
 #[pymethods]
@@ -70,6 +73,11 @@ impl Batch {
             terms: names(spec.reward_terms),
             outcomes: names(&spec.outcomes),
             outcome_names: spec.outcomes,
+            measures: spec
+                .measures
+                .iter()
+                .map(|one| (InfoKey::new(py, one.name), one.labels.len()))
+                .collect(),
         })
     }
 
@@ -178,8 +186,9 @@ impl Batch {
         Ok(shown)
     }
 
-    /// Senses, goals, outcome codes, facts and reward terms of the ended episodes of environments that
-    /// began anew by themselves within the last step, and the indices of these; None if there are none.
+    /// Senses, goals, outcome codes, facts, reward terms and measures of the ended episodes of
+    /// environments that began anew by themselves within the last step, and the indices of these; None if
+    /// there are none.
     fn ended<'py>(&self, py: Python<'py>) -> PyResult<Option<Ended<'py>>> {
         let envs = &*self.envs.read()?;
         let ended: Vec<(usize, &Record)> = (0..envs.envs())
@@ -199,6 +208,11 @@ impl Batch {
         let n = self.terms.len();
         let terms = table(py, n, each().map(|r| &r.step.terms[..n]))?;
         shown.set_item("terms", terms)?;
+        let n = self.measures.iter().map(|(_, n)| n).sum();
+        if n > 0 {
+            let measures = table(py, n, each().map(|r| &r.info.measures[..n]))?;
+            shown.set_item("measures", measures)?;
+        }
         Ok(Some((PyArray1::from_vec(py, indices), shown)))
     }
 
@@ -300,6 +314,12 @@ impl Batch {
         shown.set_item(intern!(py, "outcome"), outcome)?;
         let terms = named(py, &self.terms, &step.terms)?;
         shown.set_item(intern!(py, "reward_terms"), terms)?;
+        let mut from = 0;
+        for (key, n) in &self.measures {
+            let numbers = PyArray1::from_slice(py, &info.measures[from..from + n]);
+            shown.set_item(&key.name, numbers)?;
+            from += n;
+        }
         (
             PyArray1::from_slice(py, senses),
             step.reward,
@@ -325,7 +345,8 @@ impl Batch {
         Ok(dict)
     }
 
-    /// Facts, outcomes and reward terms of the environments in `mask`; false and 0 for the others.
+    /// Facts, outcomes, reward terms and measures of the environments in `mask`; false and 0 for the
+    /// others.
     fn infos<'py>(
         &self,
         py: Python<'py>,
@@ -363,9 +384,25 @@ impl Batch {
             infos.set_item(name, part)?;
             infos.set_item(of_name, PyArray1::from_slice(py, mask))?;
         }
+        let mut from = 0;
+        for (key, n) in &self.measures {
+            let numbers = masked().map(|(r, &shown)| {
+                let measures = if shown {
+                    &r.info.measures
+                } else {
+                    &NO_MEASURES
+                };
+                &measures[from..from + n]
+            });
+            add(&infos, key, table(py, *n, numbers)?.into_any())?;
+            from += n;
+        }
         Ok(infos)
     }
 }
+
+/// What is shown of an environment that is not in the mask.
+const NO_MEASURES: [f64; MAX_MEASURES] = [0.0; MAX_MEASURES];
 
 /// A key of the infos.
 #[derive(Debug)]

@@ -4,7 +4,7 @@ use babble_env::case::CasePart;
 use babble_env::{CaseValue, CaseValues, EnvError};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyBool, PyDict, PyTuple};
 
 use crate::errors;
 
@@ -14,6 +14,7 @@ pub(crate) fn case_dict<'py>(py: Python<'py>, case: &CaseValues) -> PyResult<Bou
     for (name, value) in case.iter() {
         match value {
             CaseValue::Absent => dict.set_item(name, py.None())?,
+            CaseValue::Flag(flag) => dict.set_item(name, flag)?,
             CaseValue::Number(number) => dict.set_item(name, number)?,
             CaseValue::Numbers(numbers) => dict.set_item(name, PyTuple::new(py, numbers)?)?,
         }
@@ -31,6 +32,9 @@ pub(crate) fn case_values(
         .map(|(name, value)| {
             let value = if value.is_none() {
                 CaseValue::Absent
+            } else if let Ok(flag) = value.cast::<PyBool>() {
+                // Before numbers, as Python's truth values are numbers too.
+                CaseValue::Flag(flag.is_true())
             } else if let Ok(number) = value.extract() {
                 CaseValue::Number(number)
             } else {

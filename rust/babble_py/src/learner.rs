@@ -120,6 +120,12 @@ impl Learner {
         Ok(self.inner.read()?.learner.shuffled())
     }
 
+    /// Babbles and learns in another task of the same kind from now on.
+    fn move_to(&self, task: &Task) -> PyResult<()> {
+        let learner = &mut self.inner.write()?.learner;
+        learner.move_to(&task.task).map_err(errors::agent)
+    }
+
     /// Babbles on `task` until `n` more babbles can be learnt from, and learns from them; interrupted,
     /// it has done neither. `rule(w, a_mean, g_mean, g, a)` returns the first three after g and a.
     #[pyo3(signature = (task, n, rule=None))]

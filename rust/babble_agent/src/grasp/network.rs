@@ -191,7 +191,8 @@ impl Network for GraspNetwork {
 impl GraspNetwork {
     /// Eye and fovea of a flat observation.
     fn split(senses: &[f32]) -> Result<([f32; 2], &[f32]), AgentError> {
-        let senses: &[f32; SENSES] = observation(senses)?;
+        // The senses that an option adds come last.
+        let senses: &[f32; SENSES] = observation(&senses[..senses.len().min(SENSES)])?;
         let eye = [senses[at::EYE], senses[at::EYE + 1]];
         Ok((eye, &senses[at::FOVEA..at::HAND]))
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use babble_env::tasks::grasp::{FACTS, GraspRequest};
+use babble_env::tasks::grasp::{FACTS, GraspRequest, ObjectPlace};
 use babble_env::{Autoreset, Batch, Control, EnvError, Executor, GraspOptions, GraspTask, Reward};
 
 use super::policy::{ChooseGrasp, GraspPolicy, Scripted, Sight};
@@ -99,7 +99,7 @@ fn holds(
     let mut env = Batch::new(task.clone(), 1, Autoreset::Disabled, 1)?;
     let request = GraspRequest {
         start: Some(start),
-        object: Some(object),
+        object: ObjectPlace::At(object),
         diameter: Some(diameter),
         ..GraspRequest::default()
     };

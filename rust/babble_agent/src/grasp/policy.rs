@@ -115,12 +115,16 @@ impl<C: ChooseGrasp> GraspPolicy<C> {
 
     /// The grasp for each flat observation of `senses`.
     fn choose(&self, senses: &[f32], executor: &mut Executor) -> Result<Vec<Grasp>, AgentError> {
-        let (all, _) = senses.as_chunks::<SENSES>();
+        // The senses that an option adds come last.
+        let all: Vec<&[f32; SENSES]> = senses
+            .chunks_exact(self.senses_len())
+            .filter_map(|senses| senses.first_chunk())
+            .collect();
         let choose = |senses: &[f32; SENSES]| self.choice.choose(&self.task, &Sight::of(senses));
-        if let [one] = all {
+        if let [one] = all[..] {
             return Ok(vec![choose(one)?]);
         }
-        executor.map(0..all.len(), |i, _| choose(&all[i]))
+        executor.map(0..all.len(), |i, _| choose(all[i]))
     }
 
     /// The action of a posture \[rad\] that the equilibrium points are to take.
@@ -141,7 +145,7 @@ impl<C: ChooseGrasp> GraspPolicy<C> {
 
 impl<C: ChooseGrasp> Policy for GraspPolicy<C> {
     fn senses_len(&self) -> usize {
-        SENSES
+        self.task.senses_len()
     }
 
     fn action_len(&self) -> usize {
@@ -162,7 +166,7 @@ impl<C: ChooseGrasp> Policy for GraspPolicy<C> {
         let Plan::Grasp(grasp) = plan else {
             return action.fill(0.0);
         };
-        grasp.touched |= senses[at::TOUCH..].iter().any(|&force| force > 0.0);
+        grasp.touched |= senses[at::TOUCH..SENSES].iter().any(|&force| force > 0.0);
         let mut wanted = grasp.posture;
         if !grasp.touched {
             let ranges = self.task.robot.ranges();

@@ -55,7 +55,7 @@ impl Babble for ReachTask {
 
     /// A random case, b1 uniform in its range and b2 = 1 − b1. What is seen and the parameters are the
     /// same all along a movement, so there is one experience, whatever the period (Sect. III-A: "for
-    /// each trajectory").
+    /// each trajectory"). Senses and muscles have the config's noise.
     fn babble(
         &self,
         options: ReachBabbling,
@@ -72,7 +72,9 @@ impl Babble for ReachTask {
         if !whole && !all {
             return Ok(Vec::new());
         }
-        let played = path.play(self, &case, options.fidelity(), |_| {});
+        let mut senses = self.config.noise.senses(stream);
+        let mut muscles = self.config.noise.muscles(stream);
+        let played = path.play_with(self, &case, options.fidelity(), &mut muscles, |_| {});
         let mut experience = Experience {
             eye: [0.0; 2],
             obstacle: [0.0; 2],
@@ -87,6 +89,8 @@ impl Babble for ReachTask {
         let single = |x: [f64; 2]| x.map(|x| x as f32);
         experience.eye = single(self.eye.normalised(gaze));
         experience.obstacle = single(Self::obstacle_angles(&camera, case.obstacle.as_ref()));
+        self.add_eye_errors(&mut senses, &mut experience.eye);
+        self.add_sight_errors(&mut senses, &mut experience.obstacle);
         Ok(vec![experience])
     }
 

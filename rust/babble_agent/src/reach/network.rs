@@ -16,13 +16,13 @@ use crate::network::{Activities, Network, Percept, Recall};
 use crate::policy::{Policy, observation};
 use crate::rule::Rule;
 
-/// Which input map and readout are used.
+/// Which input map is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Variant {
-    /// The paper's: obstacle alone, read out over the whole output map.
+    /// The paper's: obstacle alone.
     Paper,
-    /// Obstacle and target together, read out around the strongest output neuron.
+    /// Obstacle and target together.
     Conjunctive,
 }
 
@@ -50,11 +50,21 @@ impl FromStr for Variant {
     }
 }
 
+/// How the output map is read out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Readout {
+    /// The mean over the whole map, Eq. 4: between two peaks it lies between them.
+    Population,
+    /// The mean over the neurons around the strongest one.
+    Peak,
+}
+
 /// Numbers of the maps and the learning rule.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReachBrain {
-    /// Which input map and readout are used.
+    /// Which input map is used.
     pub variant: Variant,
     /// Neurons along each side of the output map; 21 \[P\].
     pub output_neurons: usize,
@@ -64,9 +74,15 @@ pub struct ReachBrain {
     pub obstacle_field_deg: f64,
     /// Neurons along each side of the target's map; 5 \[C\]. Conjunctive variant only.
     pub target_neurons: usize,
+    /// Factor of the activities of the pairs, which sum to one without it; what exceeds 1 is cut to 1;
+    /// 1 \[C\]. A larger one lets a synapse reach its bound within fewer movements. Conjunctive variant
+    /// only.
+    pub input_gain: f64,
     /// Width σ of the tuning curves in spacings of neurons (Eq. 3); 0.7 \[P, unit C\].
     pub sigma: f64,
-    /// Neurons to each side of the strongest that are read out; 2 \[C\]. Conjunctive variant only.
+    /// How the output map is read out; over all of it (Eq. 4) \[P\] (conjunctive: around its peak \[C\]).
+    pub readout: Readout,
+    /// Neurons to each side of the strongest that are read out; 2 \[C\]. Readout `peak` only.
     pub peak_radius: usize,
     /// The learning rule and its numbers; Eq. 7 with η = 1, `w_max` = 0.2, ξ = 0.2 \[P\].
     pub rule: Rule,
@@ -76,9 +92,9 @@ impl ReachBrain {
     /// The numbers of a variant.
     #[must_use]
     pub fn variant(variant: Variant) -> Self {
-        let (obstacle_neurons, obstacle_field_deg) = match variant {
-            Variant::Paper => (21, 60.0),
-            Variant::Conjunctive => (11, 30.0),
+        let (obstacle_neurons, obstacle_field_deg, readout) = match variant {
+            Variant::Paper => (21, 60.0, Readout::Population),
+            Variant::Conjunctive => (11, 30.0, Readout::Peak),
         };
         Self {
             variant,
@@ -86,7 +102,9 @@ impl ReachBrain {
             obstacle_neurons,
             obstacle_field_deg,
             target_neurons: 5,
+            input_gain: 1.0,
             sigma: 0.7,
+            readout,
             peak_radius: 2,
             rule: Rule::default(),
         }
@@ -223,9 +241,21 @@ impl ReachNetwork {
         let mut g = vec![0.0; eye.len() * self.input.len()];
         match &self.input {
             Input::Obstacle(map) => map.encode(&obstacle, &mut g)?,
-            Input::Conjunctive(map) => map.encode(&obstacle, &double(eye), &mut g)?,
+            Input::Conjunctive(map) => {
+                map.encode(&obstacle, &double(eye), &mut g)?;
+                self.amplify(&mut g);
+            }
         }
         Ok(g)
+    }
+
+    fn amplify(&self, g: &mut [f32]) {
+        let gain = self.config.input_gain as f32;
+        if gain != 1.0 {
+            for g_i in g {
+                *g_i = (gain * *g_i).min(1.0);
+            }
+        }
     }
 
     /// Activity of the output map for what is seen.
@@ -239,16 +269,16 @@ impl ReachNetwork {
         Ok(a)
     }
 
-    /// Parameters (b1, b2) of the movement that fits what is seen, Eq. 4.
+    /// Parameters (b1, b2) of the movement that fits what is seen, by the brain's readout.
     ///
     /// # Errors
     /// As [`Self::recall`].
     pub fn decide(&self, eye: [f32; 2], obstacle: [f32; 2]) -> Result<[f64; 2], AgentError> {
         let a = self.recall(eye, obstacle)?;
         let mut b = [0.0; 2];
-        match self.config.variant {
-            Variant::Paper => self.output.read_out(&a, &mut b)?,
-            Variant::Conjunctive => {
+        match self.config.readout {
+            Readout::Population => self.output.read_out(&a, &mut b)?,
+            Readout::Peak => {
                 self.output
                     .read_out_peak(&a, self.config.peak_radius, &mut b)?;
             }
@@ -310,12 +340,14 @@ fn check(config: &ReachBrain) -> Result<(), AgentError> {
             });
         }
     }
-    if !(1.0..=180.0).contains(&config.obstacle_field_deg) {
-        let problem = format!("{} is not in [1, 180]", config.obstacle_field_deg);
-        return Err(AgentError::Config {
-            field: "obstacle_field_deg",
-            problem,
-        });
-    }
+    let within = |field, value: f64, low: f64, high: f64| {
+        if (low..=high).contains(&value) {
+            return Ok(());
+        }
+        let problem = format!("{value} is not in [{low}, {high}]");
+        Err(AgentError::Config { field, problem })
+    };
+    within("obstacle_field_deg", config.obstacle_field_deg, 1.0, 180.0)?;
+    within("input_gain", config.input_gain, 0.001, 1000.0)?;
     Ok(config.rule.validate()?)
 }

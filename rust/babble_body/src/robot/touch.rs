@@ -69,6 +69,17 @@ impl Robot {
         touch
     }
 
+    /// Normal forces of upper arm, forearm and the back of the hand on the object in the last physics
+    /// step \[N\]. The palm is one solid: its force is the back's while the object is behind it.
+    #[must_use]
+    pub fn arm_touch(&self, world: &World) -> [f64; 3] {
+        // The first solids, in the order of the links.
+        let [upper_arm, forearm, palm, ..] = world.mechanics.impulses;
+        let object = self.palm(world).local_from_world(&self.object(world));
+        let back = if object.y < 0.0 { palm } else { 0.0 };
+        [upper_arm, forearm, back].map(|impulse| impulse / self.dt)
+    }
+
     /// How deep the object was inside of arm and hand as the last step began \[m\]; 0 if it was not.
     #[must_use]
     pub fn penetration(&self, world: &World) -> f64 {

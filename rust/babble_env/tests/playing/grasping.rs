@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use babble_body::Obstacle;
-use babble_env::tasks::grasp::{GraspRequest, GraspState};
+use babble_env::tasks::grasp::{GraspRequest, GraspState, ObjectPlace};
 use babble_env::{
     Autoreset, Batch, Config, Control, GraspOptions, GraspTask, Outcome, Reward, Task,
 };
@@ -61,7 +61,7 @@ pub(crate) fn before_the_palm(task: &GraspTask, diameter: f64) -> GraspRequest {
     let start = [0.2, 0.8];
     GraspRequest {
         start: Some(start),
-        object: Some(task.before_palm(start, diameter / 2.0, 0.006)),
+        object: ObjectPlace::At(task.before_palm(start, diameter / 2.0, 0.006)),
         diameter: Some(diameter),
         ..GraspRequest::default()
     }

@@ -52,14 +52,39 @@ impl GraspCase {
     }
 }
 
+/// Where a user wants the object. The order of the variants is that of their bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub enum ObjectPlace {
+    /// Where it is drawn; the option `in_hand_starts` says how often that is in the hand.
+    #[default]
+    Sampled,
+    /// With its centre at a point \[m\].
+    At([f64; 2]),
+    /// At the palm of the open hand.
+    InHand,
+    /// Where it is drawn, and not in the hand.
+    Apart,
+}
+
+impl ObjectPlace {
+    /// The point asked for, if there is one \[m\].
+    #[must_use]
+    pub const fn point(self) -> Option<[f64; 2]> {
+        match self {
+            Self::At(point) => Some(point),
+            Self::Sampled | Self::InHand | Self::Apart => None,
+        }
+    }
+}
+
 /// What a user asks of the cases to come. What is not asked for is drawn; there is no obstacle
 /// unless it is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct GraspRequest {
     /// Shoulder and elbow at the start \[rad\].
     pub start: Option<[f64; 2]>,
-    /// Centre of the object \[m\].
-    pub object: Option<[f64; 2]>,
+    /// Where the object is.
+    pub object: ObjectPlace,
     /// Diameter of the object \[m\].
     pub diameter: Option<f64>,
     /// Where the object is to be carried \[m\].
@@ -71,9 +96,15 @@ pub struct GraspRequest {
 impl GraspRequest {
     /// What named values ask.
     pub(super) fn from_values(task: &GraspTask, asked: &CaseValues) -> Self {
+        let object = match (asked.flag("in_hand"), asked.numbers("object")) {
+            (Some(true), _) => ObjectPlace::InHand,
+            (_, Some(point)) => ObjectPlace::At(point),
+            (Some(false), None) => ObjectPlace::Apart,
+            (None, None) => ObjectPlace::Sampled,
+        };
         Self {
             start: asked.numbers("start"),
-            object: asked.numbers("object"),
+            object,
             diameter: asked.number("diameter"),
             goal: asked.numbers("goal"),
             obstacle: obstacle_from(asked, task.config.body.obstacle.radius_m),
@@ -92,20 +123,23 @@ impl GraspRequest {
         stop: &Stop<'_>,
     ) -> Result<GraspCase, EnvError> {
         self.check(task)?;
-        let placed = self.start.is_some() && self.object.is_some();
+        let fixed = matches!(self.object, ObjectPlace::At(_) | ObjectPlace::InHand);
+        let placed = self.start.is_some() && fixed;
         let carried = !task.options.goal || self.goal.is_some();
         let tries = if placed && carried && self.diameter.is_some() {
             1
         } else {
             MAX_TRIES
         };
-        let in_hand = self.draw_in_hand(task, stream);
+        let in_hand = self.is_in_hand(task, stream);
         let mut last = None;
         for _ in 0..tries {
             stop.check()?;
             let mut case = self.fill(task, stream);
             if in_hand {
-                case.start = task.draw_free_posture(case.radius(), stream)?;
+                if self.start.is_none() {
+                    case.start = task.draw_free_posture(case.radius(), stream)?;
+                }
                 case.object = task.at_palm(case.start, case.radius());
             }
             match playable(task, &case, self) {
@@ -123,11 +157,17 @@ impl GraspRequest {
         }
     }
 
-    /// Whether the object is to begin in the hand. A case of which a place is given never does.
-    fn draw_in_hand(&self, task: &GraspTask, stream: &mut Stream) -> bool {
+    /// Whether the object is to begin in the hand. Unless that is asked for, a case of which the start
+    /// is given never does.
+    fn is_in_hand(&self, task: &GraspTask, stream: &mut Stream) -> bool {
         let share = task.options.in_hand_starts;
-        let placed = self.start.is_some() || self.object.is_some();
-        share > 0.0 && !placed && stream.uniform(0.0, 1.0) < share
+        match self.object {
+            ObjectPlace::InHand => true,
+            ObjectPlace::At(_) | ObjectPlace::Apart => false,
+            ObjectPlace::Sampled => {
+                share > 0.0 && self.start.is_none() && stream.uniform(0.0, 1.0) < share
+            }
+        }
     }
 
     /// Draws what is not given.
@@ -136,7 +176,7 @@ impl GraspRequest {
         let diameter = task.draw_diameter(stream);
         let object = draw_point(region, stream);
         let start = draw_start(task, region, stream);
-        let object = self.object.unwrap_or(object);
+        let object = self.object.point().unwrap_or(object);
         let goal = task.options.goal.then(|| draw_point(region, stream));
         GraspCase {
             start: self.start.unwrap_or(start),
@@ -152,7 +192,7 @@ impl GraspRequest {
         if let Some(start) = self.start {
             check_start(task, start)?;
         }
-        for (what, point) in [("object", self.object), ("goal", self.goal)] {
+        for (what, point) in [("object", self.object.point()), ("goal", self.goal)] {
             let Some([x, y]) = point else { continue };
             let reach = task.arm.length();
             if !(x.is_finite() && y.is_finite() && libm::hypot(x, y) <= reach) {
@@ -213,7 +253,7 @@ fn playable(task: &GraspTask, case: &GraspCase, request: &GraspRequest) -> Resul
         });
     }
     if !in_hand
-        && request.object.is_none()
+        && request.object.point().is_none()
         && task.grasp_posture(case.object, case.radius()).is_none()
     {
         return Err(EnvError::Case {

@@ -1,6 +1,7 @@
 //! Whether a state that somebody else wrote is one of this task's episodes.
 
 use super::enclosure::Grip;
+use super::sight;
 use super::state::{GraspState, setup};
 use super::task::GraspTask;
 use crate::check::{ensure, refused, within};
@@ -18,10 +19,14 @@ pub(super) fn check(task: &GraspTask, state: &mut GraspState) -> Result<(), EnvE
     check_case(task, state)?;
     check_senses(task, state)?;
     state.enclosure.check(numbers, state.progress.steps)?;
-    ensure(
-        task.robot.has_support(&state.world) == (state.enclosure.grip == Grip::Open),
-        || "the support goes when a grasp is tried, not before or after".to_owned(),
-    )?;
+    let supported = task.options.support_stays || state.enclosure.grip == Grip::Open;
+    ensure(task.robot.has_support(&state.world) == supported, || {
+        "the support goes when a grasp is tried, not before or after, unless it stays".to_owned()
+    })?;
+    let failed = task.options.support_stays && state.enclosure.grip == Grip::Failed;
+    ensure(!failed, || {
+        "a grasp on a support that stays does not fail".to_owned()
+    })?;
     check_trail(task, state)?;
     state
         .lifecycle
@@ -31,7 +36,10 @@ pub(super) fn check(task: &GraspTask, state: &mut GraspState) -> Result<(), EnvE
     let steps = u64::from(state.progress.steps) * u64::from(numbers.physics_steps);
     let begin = setup(task, &state.case);
     let checked = task.robot.check(&mut state.world, &begin, steps);
-    checked.map_err(|error| refused(&error))
+    checked.map_err(|error| refused(&error))?;
+    let scene = sight::scene(task, &state.world, &state.case);
+    state.in_sight = task.eye.reflex_step(&scene, state.gaze).is_some();
+    Ok(())
 }
 
 fn check_case(task: &GraspTask, state: &GraspState) -> Result<(), EnvError> {

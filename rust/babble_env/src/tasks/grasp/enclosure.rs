@@ -7,6 +7,9 @@
 //! upper arm, and a curled finger against the forearm. The support may carry the object in the first
 //! second, as objects lie on it, and is gone in the second one. What is left then is the object's
 //! weight, and only forces from several sides of the hand balance that with friction.
+//!
+//! With the option `support_stays` the support carries the object in both seconds: a hold is then an
+//! enclosure of two seconds. It lasts while the hand encloses the object, and can be tried again.
 
 use babble_body::robot::Touch;
 use serde::{Deserialize, Serialize};
@@ -109,6 +112,17 @@ impl Enclosure {
             Grip::Held | Grip::Failed => {}
         }
         false
+    }
+
+    /// On a support that stays: a grasp that failed, or that was held and is let go, can be tried
+    /// again.
+    pub fn try_again(&mut self, numbers: &GraspConfig) {
+        let whole = f64::from(numbers.hold_steps * numbers.physics_steps);
+        let encloses = self.sum(|contacts| contacts.enclosing) > numbers.held_share * whole;
+        if self.grip == Grip::Failed || (self.grip == Grip::Held && !encloses) {
+            self.grip = Grip::Open;
+            self.missed = 0;
+        }
     }
 
     /// How much of the last second the hand had the object between its sides, in \[0, 1\]: half of it

@@ -63,7 +63,7 @@ const ENVIRONMENTS: [EnvironmentEntry; 4] = [
     },
 ];
 
-const OPTIONS: [OptionSpec; 14] = [
+const OPTIONS: [OptionSpec; 17] = [
     OBS,
     OptionSpec::choice(
         "control",
@@ -101,6 +101,20 @@ const OPTIONS: [OptionSpec; 14] = [
         "enclosure_reflex",
         "The hand closes by reflex from the first touch of the palm on, whatever the action.",
     ),
+    OptionSpec::flag(
+        "reflex_releases",
+        "With enclosure_reflex: an action that opens the hand stops the reflex, until the palm is touched \
+         again.",
+    ),
+    OptionSpec::flag(
+        "support_stays",
+        "The object's support is never taken away, so that the hand can grasp and release over and over; \
+         episodes run to their time limit.",
+    ),
+    OptionSpec::flag(
+        "arm_touch",
+        "Adds the sense touch_arm: upper arm, forearm and the back of the hand feel the object.",
+    ),
     OptionSpec {
         name: "in_hand_starts",
         kind: OptionKind::Number {
@@ -123,7 +137,7 @@ const OPTIONS: [OptionSpec; 14] = [
 ];
 
 /// Parts of a case.
-const CASE_PARTS: [CasePart; 5] = [
+const CASE_PARTS: [CasePart; 6] = [
     CasePart {
         name: "start",
         lengths: &[2],
@@ -154,6 +168,13 @@ const CASE_PARTS: [CasePart; 5] = [
         unit: "m",
         doc: "Axis (x, y) and radius of the obstacle, the config's radius if not given; no obstacle if \
               not given.",
+    },
+    CasePart {
+        name: "in_hand",
+        lengths: &[],
+        unit: "",
+        doc: "True: the object is at the palm of the open hand, whatever `object` says; False: it is not; \
+              in_hand_starts decides if not given.",
     },
 ];
 
@@ -213,6 +234,9 @@ fn options(values: &OptionValues) -> Result<GraspOptions, EnvError> {
         goal: values.name("obs") == "goal",
         region,
         enclosure_reflex: values.flag("enclosure_reflex"),
+        reflex_releases: values.flag("reflex_releases"),
+        support_stays: values.flag("support_stays"),
+        arm_touch: values.flag("arm_touch"),
         in_hand_starts: values.number("in_hand_starts"),
         max_episode_steps: most.unwrap_or(region.max_episode_steps()),
         record: values.flag("record"),

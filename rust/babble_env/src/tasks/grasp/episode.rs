@@ -8,6 +8,7 @@ use super::sight::{self, FOVEA_NEURONS};
 use super::state::{GraspState, Moment, at, setup};
 use super::task::GraspTask;
 use crate::episode::clipped;
+use crate::noise::{self, Errors};
 use crate::options::{Control, Reward};
 use crate::outcome::Outcome;
 use crate::progress::{Lifecycle, Progress};
@@ -55,7 +56,7 @@ pub(super) fn fresh(task: &GraspTask, lifecycle: Lifecycle<GraspRequest>) -> Gra
 pub(super) fn begin(task: &GraspTask, state: &mut GraspState, case: GraspCase) {
     *state = at_start(task, case, state.lifecycle.clone());
     let scene = sight::scene(task, &state.world, &case);
-    state.gaze = sight::foveate(task, &scene);
+    (state.gaze, state.in_sight) = sight::foveate(task, &scene);
     state.record(task);
 }
 
@@ -76,9 +77,13 @@ pub(super) fn advance(
 ) -> bool {
     // In the goal form a failure leaves everything as it is until the time limit.
     if !state.progress.outcome.is_failure() {
-        state.advance(task, clipped(action));
+        let errors = task.config.noise.muscles(&mut state.lifecycle.stream);
+        state.advance(task, clipped(action), errors);
         let scene = sight::scene(task, &state.world, &state.case);
-        state.gaze = sight::follow(task, &scene, state.gaze);
+        let seen = task.eye.reflex_step(&scene, state.gaze);
+        state.in_sight = seen.is_some();
+        // Where no red is seen the eye stays as it is.
+        state.gaze = seen.unwrap_or(state.gaze);
         sight::look(task, &scene, state.gaze, edges);
     }
     state.record(task);
@@ -112,8 +117,47 @@ pub(super) fn observe(
             (state.equilibrium[i] - posture[i]).clamp(-stretch[i], stretch[i]) as f32;
     }
     out[at::TIME] = (f64::from(state.progress.steps) / limit).min(1.0) as f32;
-    for (out, force) in out[at::TOUCH..].iter_mut().zip(state.touch) {
+    let arm = task
+        .options
+        .arm_touch
+        .then(|| task.robot.arm_touch(&state.world));
+    let forces = state.touch.into_iter().chain(arm.into_iter().flatten());
+    for (out, force) in out[at::TOUCH..].iter_mut().zip(forces) {
         *out = (force / most).min(1.0) as f32;
+    }
+    let errors = task.config.noise.senses(&state.lifecycle.stream);
+    if !errors.are_none() {
+        add_errors(task, errors, out);
+    }
+}
+
+/// The senses' errors.
+fn add_errors(task: &GraspTask, mut errors: Errors, out: &mut [f32]) {
+    let deviations = &task.config.noise;
+    let (ranges, stretch) = (task.robot.ranges(), task.stretch_bounds());
+    let felt: [f64; 4] = errors.angles(deviations.joint_deg);
+    for (i, at) in [at::ARM, at::ARM + 1, at::HAND, at::HAND + 1]
+        .into_iter()
+        .enumerate()
+    {
+        let [low, high] = ranges[i];
+        noise::add(&mut out[at], felt[i] / (high - low), [0.0, 1.0]);
+        noise::add(
+            &mut out[at::STRETCH + i],
+            -felt[i],
+            [-stretch[i], stretch[i]],
+        );
+    }
+    for (i, [low, high]) in task.eye.ranges().into_iter().enumerate() {
+        let [error] = errors.angles(deviations.eye_deg);
+        noise::add(&mut out[at::EYE + i], error / (high - low), [0.0, 1.0]);
+    }
+    for edge in &mut out[at::FOVEA..at::HAND] {
+        noise::add(edge, errors.next(deviations.fovea), [0.0, 1.0]);
+    }
+    for force in &mut out[at::TOUCH..] {
+        let error = errors.next(deviations.touch_n) / task.config.grasp.touch_max_n;
+        noise::add(force, error, [0.0, 1.0]);
     }
 }
 
@@ -127,6 +171,7 @@ fn at_start(task: &GraspTask, case: GraspCase, lifecycle: Lifecycle<GraspRequest
         equilibrium: begin.posture,
         case,
         gaze: task.eye.rest(),
+        in_sight: false,
         touch: [0.0; 3],
         enclosure: Enclosure::default(),
         reflex: false,
@@ -147,17 +192,20 @@ pub struct Potential {
 
 impl GraspState {
     /// One control period of physics.
-    fn advance(&mut self, task: &GraspTask, action: [f64; 4]) {
+    fn advance(&mut self, task: &GraspTask, action: [f64; 4], mut errors: Errors) {
         let asked = self.drive(task, action);
+        let released = task.options.reflex_releases && self.opens_hand(task, action);
+        self.reflex &= !released;
+        let errors = errors.angles(task.config.noise.motor_deg);
         let mut period = Period::default();
         for _ in 0..task.config.grasp.physics_steps {
-            let drive = self.with_reflex(task, asked);
+            let drive = task.with_errors(self.with_reflex(task, asked), errors);
             task.robot.step(&mut self.world, &drive);
             let touch = task.robot.touch(&self.world);
             period.add(&touch);
             self.reach |= touch.any();
             self.palm_reach |= touch.palm > 0.0;
-            self.reflex |= task.options.enclosure_reflex && touch.palm > 0.0;
+            self.reflex |= task.options.enclosure_reflex && touch.palm > 0.0 && !released;
             if period.collision {
                 break;
             }
@@ -197,6 +245,18 @@ impl GraspState {
         }
     }
 
+    /// Whether an action, whose equilibrium points are set, opens the hand: in `posture` control both
+    /// thumb and finger are asked to flex less than they do, in the others both are moved or pulled open.
+    fn opens_hand(&self, task: &GraspTask, action: [f64; 4]) -> bool {
+        match task.options.control {
+            Control::Posture => {
+                let posture = task.robot.posture(&self.world);
+                self.equilibrium[2] < posture[2] && self.equilibrium[3] < posture[3]
+            }
+            _ => action[2] < 0.0 && action[3] < 0.0,
+        }
+    }
+
     /// The enclosure reflex in place of what the action asks of the hand.
     fn with_reflex(&mut self, task: &GraspTask, asked: MuscleCommands) -> MuscleCommands {
         if !self.reflex {
@@ -217,7 +277,10 @@ impl GraspState {
     fn follow_grip(&mut self, task: &GraspTask, contacts: Contacts) -> Outcome {
         let numbers = &task.config.grasp;
         let in_hand = task.in_hand(&self.world, self.case.radius());
-        if self.enclosure.step(numbers, contacts, in_hand) {
+        let tried = self.enclosure.step(numbers, contacts, in_hand);
+        if task.options.support_stays {
+            self.enclosure.try_again(numbers);
+        } else if tried {
             task.robot.remove_support(&mut self.world);
         }
         let centre = task.robot.object(&self.world);

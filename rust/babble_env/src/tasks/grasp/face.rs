@@ -11,19 +11,29 @@ use super::entry::ENTRY;
 use super::episode::{self, Potential};
 use super::options::GraspOptions;
 use super::sight::FOVEA_NEURONS;
-use super::state::{GraspState, SENSES};
+use super::state::{ARM_TOUCHES, GraspState, SENSES};
 use super::task::GraspTask;
 use super::{check, picture, protocol, spec};
 use crate::case::{CasePart, CaseValues};
 use crate::config::Config;
 use crate::error::EnvError;
 use crate::executor::{Executor, Stop};
+use crate::noise::NoiseConfig;
 use crate::outcome::Outcome;
 use crate::picture::View;
 use crate::progress::{Ending, Lifecycle, Progress};
 use crate::spec::Spec;
 use crate::stream::{Purpose, Stream};
-use crate::task::{MAX_TERMS, Task};
+use crate::task::{MAX_MEASURES, MAX_TERMS, Task};
+
+/// Written as the options alone while there is no noise.
+#[derive(Serialize)]
+struct OptionsAndNoise {
+    #[serde(flatten)]
+    options: GraspOptions,
+    #[serde(skip_serializing_if = "NoiseConfig::is_off")]
+    noise: NoiseConfig,
+}
 
 impl Task for GraspTask {
     type Request = GraspRequest;
@@ -46,7 +56,11 @@ impl Task for GraspTask {
     }
 
     fn senses_len(&self) -> usize {
-        SENSES
+        if self.options.arm_touch {
+            SENSES + ARM_TOUCHES
+        } else {
+            SENSES
+        }
     }
 
     fn spec(&self) -> Spec {
@@ -63,9 +77,11 @@ impl Task for GraspTask {
             profile,
             body,
             grasp,
+            noise,
             ..
         } = &self.config;
-        (profile, body, grasp, options)
+        let noise = *noise;
+        (profile, body, grasp, OptionsAndNoise { options, noise })
     }
 
     fn config(&self) -> &Config {
@@ -76,6 +92,7 @@ impl Task for GraspTask {
         json!({
             "ranges": self.robot.ranges(),
             "reflex": self.reflex(),
+            "muscles": self.muscles().map(|muscles| [muscles.kp, muscles.torque_max]),
             "delta_posture": self.config.grasp.delta_posture_deg.to_radians(),
         })
     }
@@ -124,6 +141,7 @@ impl Task for GraspTask {
     fn ending(&self) -> Ending {
         Ending {
             goal: self.options.goal,
+            goes_on: self.options.support_stays,
             single_step: false,
             max_steps: self.options.max_episode_steps,
         }
@@ -157,7 +175,11 @@ impl Task for GraspTask {
 
     fn facts(&self, state: &GraspState, out: &mut [bool]) {
         let held = state.enclosure.grip == Grip::Held;
-        out[..3].copy_from_slice(&[state.reach, state.palm_reach, held]);
+        out[..4].copy_from_slice(&[state.reach, state.palm_reach, held, state.in_sight]);
+    }
+
+    fn measures(&self, state: &GraspState, out: &mut [f64; MAX_MEASURES]) {
+        *out = self.robot.object(&state.world).into();
     }
 
     fn goal_reward(&self, achieved: &[f32], desired: &[f32]) -> f64 {

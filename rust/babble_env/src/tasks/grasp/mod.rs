@@ -16,7 +16,7 @@ mod spec;
 mod state;
 mod task;
 
-pub use case::{GraspCase, GraspRequest};
+pub use case::{GraspCase, GraspRequest, ObjectPlace};
 pub use config::{GraspConfig, RegionConfig};
 pub use enclosure::{Contacts, Enclosure, Grip};
 pub(crate) use entry::ENTRY;

@@ -1,6 +1,6 @@
 //! The paper's tests by name: the same cases for every agent.
 
-use super::case::{GraspCase, GraspRequest};
+use super::case::{GraspCase, GraspRequest, ObjectPlace};
 use super::task::GraspTask;
 use crate::error::EnvError;
 use crate::executor::{Executor, Stop};
@@ -63,7 +63,7 @@ fn case(task: &GraspTask, diameter: f64, position: usize, start: usize) -> Optio
     let share = [0, 1].map(|i| (share[i] as f64 + 0.5) / STARTS[i] as f64);
     let request = GraspRequest {
         start: Some(task.arm.denormalised(share)),
-        object: Some([radius * cos, radius * sin]),
+        object: ObjectPlace::At([radius * cos, radius * sin]),
         diameter: Some(diameter),
         ..GraspRequest::default()
     };

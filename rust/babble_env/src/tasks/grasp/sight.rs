@@ -41,11 +41,13 @@ fn table(task: &GraspTask) -> Primitive {
     Primitive::new(shape, TABLE)
 }
 
-/// The gaze that the reflex of Eq. 1 ends in; straight at the workspace's middle when arm and hand
-/// hide all of the object.
-pub(super) fn foveate(task: &GraspTask, scene: &[Primitive]) -> Gaze {
+/// The gaze that the reflex of Eq. 1 ends in, and whether it sees the object: straight at the
+/// workspace's middle when arm and hand hide all of it.
+pub(super) fn foveate(task: &GraspTask, scene: &[Primitive]) -> (Gaze, bool) {
     let rest = task.eye.rest();
-    task.eye.foveate(scene, rest).unwrap_or(rest)
+    task.eye
+        .foveate(scene, rest)
+        .map_or((rest, false), |gaze| (gaze, true))
 }
 
 /// Lets the eye find the object and fills in the fovea's edges; none where all of it is hidden.
@@ -60,11 +62,6 @@ pub fn see(
     let gaze = task.eye.foveate(&scene, task.eye.rest()).ok()?;
     look(task, &scene, gaze, fovea);
     Some(gaze)
-}
-
-/// One step of the reflex, Eq. 1. Where no red is seen the eye stays as it is.
-pub(super) fn follow(task: &GraspTask, scene: &[Primitive], gaze: Gaze) -> Gaze {
-    task.eye.reflex_step(scene, gaze).unwrap_or(gaze)
 }
 
 /// Edges in the fovea, where the eye looks.

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use babble_eye::FOVEA_BLOCKS;
 
 use super::sight::FOVEA_NEURONS;
-use super::state::FACTS;
+use super::state::{FACTS, MEASURES};
 use super::task::GraspTask;
 use crate::options::{Control, Reward};
 use crate::outcome::Outcome;
@@ -33,6 +33,7 @@ pub(super) fn spec(task: &GraspTask) -> Spec {
             (false, Reward::Sparse) => &["success"],
         },
         facts: &FACTS,
+        measures: MEASURES,
         outcomes: OUTCOMES.map(Outcome::name).to_vec(),
         max_episode_steps: task.options.max_episode_steps,
         control_hz: 1.0 / task.config.grasp.control_period_s,
@@ -50,7 +51,8 @@ fn senses(task: &GraspTask) -> Vec<Entry> {
     };
     let range = || "share of range".to_owned();
     let stretch = task.stretch_bounds();
-    vec![
+    let force = || format!("share of {} N", task.config.grasp.touch_max_n);
+    let mut senses = vec![
         share("arm", vec!["shoulder", "elbow"], range(), "joint angles"),
         share(
             "eye",
@@ -87,10 +89,20 @@ fn senses(task: &GraspTask) -> Vec<Entry> {
         share(
             "touch",
             vec!["palm", "thumb", "fingers"],
-            format!("share of {} N", task.config.grasp.touch_max_n),
+            force(),
             "normal force on the object, mean over the last control step",
         ),
-    ]
+    ];
+    if task.options.arm_touch {
+        senses.push(share(
+            "touch_arm",
+            vec!["upper arm", "forearm", "back of the hand"],
+            force(),
+            "normal force on the object at the end of the control step; that of the back of the hand is \
+             part of the palm's in touch",
+        ));
+    }
+    senses
 }
 
 fn goals(task: &GraspTask) -> Vec<Entry> {

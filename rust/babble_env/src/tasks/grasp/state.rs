@@ -9,6 +9,7 @@ use super::enclosure::Enclosure;
 use super::sight::FOVEA_NEURONS;
 use super::task::GraspTask;
 use crate::progress::{Lifecycle, Progress, SUCCESS_FACTS};
+use crate::spec::Measure;
 
 /// Where each sense stands in a flat observation: by name, as Gymnasium flattens a Dict.
 pub mod at {
@@ -30,17 +31,28 @@ pub mod at {
     pub const TOUCH: usize = TIME + 1;
 }
 
-/// Numbers in a flat observation.
+/// Numbers in a flat observation, before those of `touch_arm`, which the option `arm_touch` adds.
 pub const SENSES: usize = at::TOUCH + 3;
+/// Upper arm, forearm, back of the hand.
+pub(super) const ARM_TOUCHES: usize = 3;
 
 /// What is true or false of an episode.
-pub const FACTS: [&str; 5] = [
+pub const FACTS: [&str; 6] = [
     SUCCESS_FACTS[0],
     SUCCESS_FACTS[1],
     "reach",
     "palm_reach",
     "held",
+    "in_sight",
 ];
+
+/// What an episode shows beside.
+pub(super) const MEASURES: &[Measure] = &[Measure {
+    name: "object",
+    labels: &["x", "y", "z"],
+    unit: "m",
+    description: "centre of the object; from the shoulder, x right, y forward, z up",
+}];
 
 /// A recorded moment, for pictures.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -57,6 +69,7 @@ pub struct Moment {
 
 /// Everything that changes: what a snapshot holds.
 #[derive(Debug, Clone, Serialize, Deserialize)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a fact by itself")]
 pub struct GraspState {
     /// Arm, hand, object, support and obstacle.
     pub world: World,
@@ -66,6 +79,9 @@ pub struct GraspState {
     pub case: GraspCase,
     /// Pan and tilt \[rad\].
     pub gaze: Gaze,
+    /// Whether the eye sees any of the object. Made again from the scene when a state is read.
+    #[serde(skip)]
+    pub in_sight: bool,
     /// Mean normal forces of palm, thumb and fingers over the last control step \[N\].
     pub touch: [f64; 3],
     /// How far the grasp has come.

@@ -2,7 +2,7 @@
 
 use babble_body::config::Muscles;
 use babble_body::joints::Joint;
-use babble_body::robot::World;
+use babble_body::robot::{MuscleCommand, MuscleCommands, World};
 use babble_body::{PlanarArm, Robot};
 use babble_eye::Eye;
 use nalgebra::{Vector2, Vector3};
@@ -64,6 +64,14 @@ impl GraspTask {
                 bound: "in [0, 1]".to_owned(),
             });
         }
+        if options.reflex_releases && !options.enclosure_reflex {
+            return Err(EnvError::OptionKind {
+                option: "reflex_releases",
+                value: "true".to_owned(),
+                expected: "possible without enclosure_reflex: there is no reflex to stop"
+                    .to_owned(),
+            });
+        }
         check_locks(&config)?;
         Ok(Self {
             robot: Robot::new(&config.body, config.grasp.physics_step_s()),
@@ -117,6 +125,26 @@ impl GraspTask {
         std::array::from_fn(|i| match self.options.control {
             Control::Torque => muscles[i].torque_max / muscles[i].kp,
             _ => ranges[i][1] - ranges[i][0],
+        })
+    }
+
+    /// What the muscles do when this is asked of them and their equilibrium points have these errors
+    /// \[rad\].
+    #[must_use]
+    pub fn with_errors(&self, asked: MuscleCommands, errors: [f64; 4]) -> MuscleCommands {
+        if self.config.noise.motor_deg == 0.0 {
+            return asked;
+        }
+        let (muscles, ranges) = (self.muscles(), self.robot.ranges());
+        std::array::from_fn(|i| match asked[i] {
+            MuscleCommand::EquilibriumPoint(q) => {
+                let [low, high] = ranges[i];
+                MuscleCommand::EquilibriumPoint((q + errors[i]).clamp(low, high))
+            }
+            MuscleCommand::Torque(torque) => {
+                let Muscles { kp, torque_max, .. } = muscles[i];
+                MuscleCommand::Torque((torque + kp * errors[i]).clamp(-torque_max, torque_max))
+            }
         })
     }
 

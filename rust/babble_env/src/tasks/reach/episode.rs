@@ -11,6 +11,7 @@ use super::task::ReachTask;
 use crate::episode::clipped;
 use crate::error::EnvError;
 use crate::executor::Stop;
+use crate::noise::{self, Errors};
 use crate::options::{Control, Reward};
 use crate::outcome::Outcome;
 use crate::progress::{Lifecycle, Progress};
@@ -104,11 +105,12 @@ pub(super) fn advance(
     action: &[f32],
 ) -> Result<bool, EnvError> {
     let action = clipped(action);
+    let mut errors = task.config.noise.muscles(&mut state.lifecycle.stream);
     // In the goal form a failure holds the arm where it is until the time limit.
     if !state.progress.outcome.is_failure() {
         state.progress.outcome = match task.options.control {
-            Control::Pattern => play(task, state, action)?,
-            _ => move_arm(task, state, action),
+            Control::Pattern => play(task, state, action, &mut errors)?,
+            _ => move_arm(task, state, action, &mut errors),
         };
     } else if task.options.record {
         state.trail.push(state.arm.q);
@@ -130,6 +132,26 @@ pub(super) fn observe(task: &ReachTask, state: &ReachState, sight: &Sight, out: 
         out[at::STRETCH + i] = (state.equilibrium[i] - state.arm.q[i]) as f32;
     }
     out[at::TIME] = (f64::from(state.progress.steps) / limit).min(1.0) as f32;
+    let errors = task.config.noise.senses(&state.lifecycle.stream);
+    if !errors.are_none() {
+        add_errors(task, state, errors, out);
+    }
+}
+
+/// The senses' errors.
+fn add_errors(task: &ReachTask, state: &ReachState, mut errors: Errors, out: &mut [f32]) {
+    let deviations = &task.config.noise;
+    let stretch = task.stretch_bounds();
+    for (i, error) in errors.angles::<2>(deviations.joint_deg).iter().enumerate() {
+        let width = task.arm.upper_limit[i] - task.arm.lower[i];
+        noise::add(&mut out[at::ARM + i], error / width, [0.0, 1.0]);
+        noise::add(&mut out[at::STRETCH + i], -error, [-stretch[i], stretch[i]]);
+    }
+    task.add_eye_errors(&mut errors, &mut out[at::EYE..at::EYE + 2]);
+    task.add_sight_errors(&mut errors, &mut out[at::HAND..at::HAND + 2]);
+    if state.case.obstacle.is_some() {
+        task.add_sight_errors(&mut errors, &mut out[at::OBSTACLE..at::OBSTACLE + 2]);
+    }
 }
 
 /// Positions of fingertip and target \[m\]. Once the arm failed, the first is none that it can take,
@@ -142,12 +164,17 @@ pub(super) fn goals(task: &ReachTask, state: &ReachState) -> [[f32; 2]; 2] {
     [tip, target]
 }
 
-fn play(task: &ReachTask, state: &mut ReachState, action: [f64; 2]) -> Result<Outcome, EnvError> {
+fn play(
+    task: &ReachTask,
+    state: &mut ReachState,
+    action: [f64; 2],
+    errors: &mut Errors,
+) -> Result<Outcome, EnvError> {
     let [low, high] = task.config.reach.b_range;
     let b = action.map(|a| (0.5 + 0.5 * a).clamp(low, high));
     let path = MovementPath::new(task, &state.case, b)?;
     let trail = &mut state.trail;
-    let movement = path.play(task, &state.case, Fidelity::Full, |arm| {
+    let movement = path.play_with(task, &state.case, Fidelity::Full, errors, |arm| {
         if task.options.record {
             trail.push(arm.q);
         }
@@ -163,13 +190,19 @@ fn play(task: &ReachTask, state: &mut ReachState, action: [f64; 2]) -> Result<Ou
     })
 }
 
-fn move_arm(task: &ReachTask, state: &mut ReachState, action: [f64; 2]) -> Outcome {
+fn move_arm(
+    task: &ReachTask,
+    state: &mut ReachState,
+    action: [f64; 2],
+    errors: &mut Errors,
+) -> Outcome {
     let mut watch = task.watch(state.case.obstacle, state.arm.q);
     let muscles = &task.config.body.muscles;
     let touched = if task.options.control == Control::Torque {
         let torque = action.map(|a| a * muscles.torque_max);
+        let pull = task.with_torque_errors(torque, errors);
         let touched = task.advance(&mut state.arm, &mut watch, |arm, dt| {
-            task.dynamics.step_torque(arm, torque, dt)
+            task.dynamics.step_torque(arm, pull, dt)
         });
         // The posture whose spring would pull as hard: the muscles' state in this control.
         state.equilibrium = [0, 1].map(|i| state.arm.q[i] + torque[i] / muscles.kp);
@@ -182,7 +215,7 @@ fn move_arm(task: &ReachTask, state: &mut ReachState, action: [f64; 2]) -> Outco
             task.arm
                 .clamp([0, 1].map(|i| state.equilibrium[i] + unit * action[i]))
         };
-        let q_des = state.equilibrium;
+        let q_des = task.with_errors(state.equilibrium, errors);
         task.advance(&mut state.arm, &mut watch, |arm, dt| {
             task.dynamics.step(arm, q_des, dt)
         })

@@ -18,6 +18,7 @@ use crate::case::{CasePart, CaseValues};
 use crate::config::Config;
 use crate::error::EnvError;
 use crate::executor::{Executor, Stop};
+use crate::noise::NoiseConfig;
 use crate::options::Control;
 use crate::outcome::Outcome;
 use crate::picture::View;
@@ -32,6 +33,8 @@ struct Fingerprint<'a> {
     profile: &'a str,
     body: &'a Body,
     reach: &'a ReachConfig,
+    #[serde(skip_serializing_if = "NoiseConfig::is_off")]
+    noise: NoiseConfig,
 }
 
 impl Task for ReachTask {
@@ -76,12 +79,14 @@ impl Task for ReachTask {
             profile,
             body,
             reach,
+            noise,
             ..
         } = &self.config;
         let config = Fingerprint {
             profile,
             body,
             reach,
+            noise: *noise,
         };
         (config, options)
     }
@@ -91,9 +96,12 @@ impl Task for ReachTask {
     }
 
     fn quantities(&self) -> Value {
-        let width = |i: usize| self.arm.upper_limit[i] - self.arm.lower[i];
+        let muscles = &self.config.body.muscles;
+        let ranges = [0, 1].map(|i| [self.arm.lower[i], self.arm.upper_limit[i]]);
         json!({
-            "joint_range": [width(0), width(1)],
+            "joint_range": ranges.map(|[low, high]| high - low),
+            "ranges": ranges,
+            "muscles": [[muscles.kp, muscles.torque_max], [muscles.kp, muscles.torque_max]],
             "delta_posture": self.config.reach.delta_posture_deg.to_radians(),
             "b_range": self.config.reach.b_range,
         })
@@ -139,6 +147,7 @@ impl Task for ReachTask {
     fn ending(&self) -> Ending {
         Ending {
             goal: self.options.goal,
+            goes_on: false,
             single_step: self.options.control == Control::Pattern,
             max_steps: self.options.max_episode_steps,
         }

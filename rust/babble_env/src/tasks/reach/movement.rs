@@ -7,6 +7,7 @@ use nalgebra::Vector2;
 use super::case::ReachCase;
 use super::task::ReachTask;
 use crate::error::EnvError;
+use crate::noise::Errors;
 use crate::outcome::Outcome;
 
 /// An arm with less than this clearance in a posture touches, whatever the rounding errors of the
@@ -103,13 +104,15 @@ impl MovementPath {
     pub fn is_legal(&self, task: &ReachTask, case: &ReachCase, fidelity: Fidelity) -> bool {
         !self.violates
             && match fidelity {
-                Fidelity::Full => self.simulate(task, case, |_| {}).outcome != Outcome::Collision,
+                Fidelity::Full => {
+                    self.play(task, case, fidelity, |_| {}).outcome != Outcome::Collision
+                }
                 Fidelity::QuasiStatic => self.first_touch(task, case).is_none(),
             }
     }
 
-    /// The movement in the given fidelity; whichever of collision and joint limit comes first in
-    /// time ends it. `each` is called with the arm at the end of every control period.
+    /// The movement without noise in the given fidelity; whichever of collision and joint limit comes
+    /// first in time ends it. `each` is called with the arm at the end of every control period.
     pub fn play(
         &self,
         task: &ReachTask,
@@ -117,8 +120,20 @@ impl MovementPath {
         fidelity: Fidelity,
         each: impl FnMut(&ArmState),
     ) -> Movement {
+        self.play_with(task, case, fidelity, &mut Errors::none(), each)
+    }
+
+    /// The same with the muscles' errors, which a quasi-static movement does not have.
+    pub fn play_with(
+        &self,
+        task: &ReachTask,
+        case: &ReachCase,
+        fidelity: Fidelity,
+        errors: &mut Errors,
+        each: impl FnMut(&ArmState),
+    ) -> Movement {
         match fidelity {
-            Fidelity::Full => self.simulate(task, case, each),
+            Fidelity::Full => self.simulate(task, case, errors, each),
             Fidelity::QuasiStatic => self.follow(task, case, each),
         }
     }
@@ -127,6 +142,7 @@ impl MovementPath {
         &self,
         task: &ReachTask,
         case: &ReachCase,
+        errors: &mut Errors,
         mut each: impl FnMut(&ArmState),
     ) -> Movement {
         let period = task.config.reach.control_period_s;
@@ -139,7 +155,8 @@ impl MovementPath {
             task.settle_steps()
         };
         let held = std::iter::repeat_n(last, settling);
-        for (k, q_des) in self.postures.iter().copied().chain(held).enumerate() {
+        for (k, asked) in self.postures.iter().copied().chain(held).enumerate() {
+            let q_des = task.with_errors(asked, errors);
             let touched = task.advance(&mut arm, &mut watch, |state, dt| {
                 task.dynamics.step(state, q_des, dt)
             });

@@ -26,6 +26,7 @@ pub(super) fn spec(task: &ReachTask) -> Spec {
         action: action(task),
         reward_terms: reward_terms(task),
         facts: &SUCCESS_FACTS,
+        measures: &[],
         outcomes: OUTCOMES.map(Outcome::name).to_vec(),
         max_episode_steps: task.options.max_episode_steps,
         control_hz: 1.0 / task.config.reach.control_period_s,
@@ -35,12 +36,7 @@ pub(super) fn spec(task: &ReachTask) -> Spec {
 fn senses(task: &ReachTask) -> Vec<Entry> {
     let unit_square = || (vec![0.0; 2], vec![1.0; 2]);
     let angles = || (vec![-PI, -FRAC_PI_2], vec![PI, FRAC_PI_2]);
-    let arm = &task.arm;
-    let muscles = &task.config.body.muscles;
-    let stretch = [0, 1].map(|i| match task.options.control {
-        Control::Torque => muscles.torque_max / muscles.kp,
-        _ => arm.upper_limit[i] - arm.lower[i],
-    });
+    let stretch = task.stretch_bounds();
     let entry =
         |name, labels: [&'static str; 2], (low, high), unit: &'static str, description| Entry {
             name,

@@ -1,5 +1,8 @@
 //! Everything about reaching that stays the same within and between episodes.
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use babble_body::config::Muscles;
 use babble_body::{ArmState, ContactWatch, Dynamics, Obstacle, PlanarArm};
 use babble_eye::{Eye, Pinhole};
 use nalgebra::{Vector2, Vector3};
@@ -7,7 +10,8 @@ use nalgebra::{Vector2, Vector3};
 use super::options::ReachOptions;
 use crate::config::Config;
 use crate::error::EnvError;
-use crate::options::{Reward, check_max_episode_steps};
+use crate::noise::{self, Errors};
+use crate::options::{Control, Reward, check_max_episode_steps};
 
 /// Params of the reaching task.
 #[derive(Debug, Clone)]
@@ -84,6 +88,48 @@ impl ReachTask {
         false
     }
 
+    /// The equilibrium points that the muscles pull to \[rad\] when these are asked for.
+    #[must_use]
+    pub fn with_errors(&self, asked: [f64; 2], errors: &mut Errors) -> [f64; 2] {
+        if errors.are_none() {
+            return asked;
+        }
+        let error: [f64; 2] = errors.angles(self.config.noise.motor_deg);
+        self.arm.clamp([0, 1].map(|i| asked[i] + error[i]))
+    }
+
+    /// Adds errors to felt pan and tilt, shares of their ranges.
+    pub fn add_eye_errors(&self, errors: &mut Errors, eye: &mut [f32]) {
+        for (felt, [low, high]) in eye.iter_mut().zip(self.eye.ranges()) {
+            let [error] = errors.angles(self.config.noise.eye_deg);
+            noise::add(felt, error / (high - low), [0.0, 1.0]);
+        }
+    }
+
+    /// Adds errors to a seen direction, azimuth and elevation \[rad\].
+    pub fn add_sight_errors(&self, errors: &mut Errors, seen: &mut [f32]) {
+        for (angle, bound) in seen.iter_mut().zip([PI, FRAC_PI_2]) {
+            let [error] = errors.angles(self.config.noise.sight_deg);
+            noise::add(angle, error, [-bound, bound]);
+        }
+    }
+
+    /// The torques of the muscles \[N·m\] when these are asked for.
+    pub(super) fn with_torque_errors(&self, asked: [f64; 2], errors: &mut Errors) -> [f64; 2] {
+        let error: [f64; 2] = errors.angles(self.config.noise.motor_deg);
+        let Muscles { kp, torque_max, .. } = self.config.body.muscles;
+        [0, 1].map(|i| (asked[i] + kp * error[i]).clamp(-torque_max, torque_max))
+    }
+
+    /// Greatest difference between equilibrium point and joint angle that is shown \[rad\].
+    pub(super) fn stretch_bounds(&self) -> [f64; 2] {
+        let muscles = &self.config.body.muscles;
+        [0, 1].map(|i| match self.options.control {
+            Control::Torque => muscles.torque_max / muscles.kp,
+            _ => self.arm.upper_limit[i] - self.arm.lower[i],
+        })
+    }
+
     /// Control periods that the arm is given to settle after a movement.
     #[must_use]
     pub fn settle_steps(&self) -> usize {
@@ -102,7 +148,6 @@ impl ReachTask {
     /// straight behind the eye.
     #[must_use]
     pub fn obstacle_angles(camera: &Pinhole, obstacle: Option<&Obstacle>) -> [f64; 2] {
-        use std::f64::consts::{FRAC_PI_2, PI};
         obstacle.map_or([-PI, -FRAC_PI_2], |obstacle| {
             Self::angles(camera, obstacle.centre)
         })

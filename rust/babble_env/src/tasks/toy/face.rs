@@ -64,6 +64,7 @@ impl Task for PointTask {
             action: entry("action", &["x", "y"], -1.0, "velocity, 0.1 m a step"),
             reward_terms: &["success"],
             facts: &SUCCESS_FACTS,
+            measures: &[],
             outcomes: Self::OUTCOMES
                 .iter()
                 .map(|outcome| outcome.name())
@@ -111,6 +112,7 @@ impl Task for PointTask {
     fn ending(&self) -> Ending {
         Ending {
             goal: false,
+            goes_on: false,
             single_step: false,
             max_steps: self.max_episode_steps,
         }

@@ -37,7 +37,8 @@ def check_wheel(path: Path) -> None:
         (metadata,) = (name for name in names if name.endswith(".dist-info/METADATA"))
         check_description(path, wheel.read(metadata))
     strays = [name for name in names if not name.startswith(("gym_babble/", "gym_babble-"))]
-    kinds = ("*.py", "*.pyi", "*.css", "*.html", "*.js", "*.json", "*.yml", "py.typed")
+    kinds = ("*.py", "*.pyi", "*.css", "*.html", "*.js", "*.json", "*.toml", "*.yml", "py.typed")
+    kinds += ("*.safetensors", "*.zip")
     sources = {str(source) for kind in kinds for source in Path("gym_babble").rglob(kind)}
     missing = sources - set(names)
     if strays or missing or "-abi3-" not in path.name:

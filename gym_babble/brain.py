@@ -45,6 +45,7 @@ __all__ = [
     "CovarianceRule",
     "HebbRule",
     "OjaRule",
+    "OutstarRule",
     "OwnRule",
     "PopulationMap",
     "RuleLike",
@@ -107,10 +108,22 @@ class OjaRule:
     """Share ξ of the old value in the running averages, which the rule does not use."""
 
 
-RULES = {rule.name: rule for rule in (CovarianceRule, HebbRule, OjaRule)}
+@dataclass(frozen=True, kw_only=True)
+class OutstarRule:
+    """Grossberg's outstar (1968), which has no numbers: Δw_ji = (g_i / u_i)(a_j − w_ji).
+
+    u_i is the use of the input, the sum of its activities so far. So w_ji is the mean of the
+    output's activities that the input was paired with. u stands in place of the input's average;
+    an input below 1e-4 counts as zero.
+    """
+
+    name: ClassVar[str] = "outstar"
+
+
+RULES = {rule.name: rule for rule in (CovarianceRule, HebbRule, OjaRule, OutstarRule)}
 """The rules of the core by name."""
 
-RuleLike: TypeAlias = str | CovarianceRule | HebbRule | OjaRule | OwnRule
+RuleLike: TypeAlias = str | CovarianceRule | HebbRule | OjaRule | OutstarRule | OwnRule
 """A rule by name, with numbers of its own, or a function (`OwnRule`)."""
 
 
@@ -368,7 +381,7 @@ def rule_numbers(rule: Any) -> dict[str, Any]:
         return dict(json.loads(_core.rule_json()))
     if isinstance(rule, str) and rule in RULES:
         return dict(json.loads(_core.rule_json(rule)))
-    if isinstance(rule, CovarianceRule | HebbRule | OjaRule):
+    if isinstance(rule, CovarianceRule | HebbRule | OjaRule | OutstarRule):
         return {"name": rule.name, **plain(asdict(rule), "rule")}
     raise ConfigError(
         f"rule = {shown(rule)} is not a function, a rule of gym_babble.brain, or one of "

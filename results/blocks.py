@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any
 from gym_babble.paper.table2 import PAPER_TABLE_II
 from gym_babble.study.rates import paper_tally, share
 from gym_babble.study.roster import ROSTER
+from results.study_blocks import STUDY_BLOCKS
+from results.tables import SIZES, interval, markdown, span
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable
 
     from results.stores import Stores
 
@@ -18,24 +20,6 @@ OUTCOMES = ("success", "collision", "joint_limit")
 DISTANCES = (0, 1, 2, 4, 7, 15)
 AGENTS = ("scripted", "oracle")
 PANELS = ("halfway", "switched")
-SIZES = {"small": "2.4 cm", "big": "6 cm"}
-
-
-def markdown(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A Markdown table."""
-    lines = [heads, ["---"] * len(heads), *rows]
-    return "".join(f"| {' | '.join(cells)} |\n" for cells in lines)
-
-
-def span(low: float, high: float) -> str:
-    """A range of rates."""
-    return f"{share(low)}–{share(high)}"
-
-
-def interval(rate: dict[str, float]) -> str:
-    """The 95 % interval of one seed's rate."""
-    return span(rate["low"], rate["high"])
-
 
 PAPER_ROW = ["20,000", *(share(paper_tally()[name]["rate"]) for name in OUTCOMES), "≈ .20"]
 
@@ -118,6 +102,39 @@ def vote(stores: Stores) -> str:
         found = stores["vote"]["rows"][name]
         rows.append([*title, share(found["success"]), ", ".join(map(share, found["by_seed"]))])
     return markdown(["choice of b1", "sees", "success", "by seed"], rows)
+
+
+def readouts(stores: Stores) -> str:
+    """Which rule, map and readout come how near to what the obstacle's direction allows."""
+    titles = {
+        "obstacle, Eq. 7": "Eq. 7, 21 × 21 over ± 60°",
+        "fine obstacle, Hebb": "Hebb, η = 0.1, 41 × 41 over ± 40°",
+    }
+    readouts = {"mean": "mean of the map, Eq. 4", "peak": "around the strongest neuron"}
+    rows = [
+        [
+            titles[row["network"]],
+            readouts[row["readout"]],
+            share(row["success"]),
+            ", ".join(map(share, row["by_seed"])),
+        ]
+        for row in stores["readouts"]["obstacle"]
+    ]
+    return markdown(["rule and map", "readout", "success", "by seed"], rows)
+
+
+def changed_body(stores: Stores) -> str:
+    """How far agents fall in a changed body, and after how much learning they are back."""
+    found = stores["changed_body"]["hebb"]
+    rates = {(row["agent"], row["change"], row["movements"]): row["success"] for row in found}
+    agents, changes, budgets = (list(dict.fromkeys(part)) for part in zip(*rates, strict=True))
+    rows = [
+        [agent, change, *(share(rates[agent, change, budget]) for budget in budgets)]
+        for agent in agents
+        for change in changes
+    ]
+    later = [f"after {budget:,} movements more" for budget in budgets[1:]]
+    return markdown(["agent", "change", "at once", *later], rows)
 
 
 def periods(stores: Stores) -> str:
@@ -268,52 +285,6 @@ def interference(stores: Stores) -> str:
     return markdown([*heads, "recalled in the hand"], rows)
 
 
-def ppo_reach(stores: Stores) -> str:
-    """PPO's presets in reaching."""
-    more = ("collision", "joint_limit", "timeout")
-    learnt = ("movements", "control_steps", "seconds", "processor_seconds")
-    rows = [
-        [
-            found["preset"],
-            f"{found['steps']:,}",
-            *_mean_and_range(found),
-            *(share(found[name]["mean"]) for name in more),
-            *(f"{found[name]:,.0f}" for name in learnt),
-        ]
-        for found in stores["ppo_reach"].values()
-    ]
-    heads = ["preset", "steps", "success", "seeds", *more, *learnt]
-    return markdown([head.replace("_", " ") for head in heads], rows)
-
-
-def _mean_and_range(found: dict[str, Any]) -> list[str]:
-    success = found["success"]
-    return [share(success["mean"]), f"{found['seeds']}: {span(success['min'], success['max'])}"]
-
-
-def grasping(stores: Stores) -> str:
-    """The agents of grasping on `palm_side` cases."""
-    (ppo,), hebb = stores["ppo_grasp"].values(), stores["grasp"]["hebb"]["agents"][0]["test"]
-    rows = [
-        _grasping_row(f"PPO `grasp`, {ppo['steps']:,} steps", _mean_and_range(ppo), ppo, "mean"),
-        _grasping_row("`HebbBabbling`, 1,000 babbles", _mean_and_range(hebb), hebb, "mean"),
-    ]
-    for title, run in (("`Scripted`", "grasp-scripted"), ("`Random`", "grasp-random")):
-        found = stores["references"][run]
-        success = found["success"]
-        cells = [share(success["rate"]), f"1: [{interval(success)}]"]
-        rows.append(_grasping_row(title, cells, found, "rate"))
-    heads = ["agent", "success", "seeds", *SIZES.values(), "lost", "timeout"]
-    return markdown([*heads, "any part touches", "palm touches"], rows)
-
-
-def _grasping_row(title: str, cells: list[str], found: dict[str, Any], key: str) -> list[str]:
-    of_size = [found["by_size"].get(size) for size in SIZES.values()]
-    split = [share(part["success"][key]) if part else "–" for part in of_size]
-    rest = [share(found[name][key]) for name in ("lost", "timeout", "reach", "palm_reach")]
-    return [title, *cells, *split, *rest]
-
-
 def roster(_: Stores) -> str:
     """The agents that a study can name."""
     rows = []
@@ -361,19 +332,19 @@ def tuning(stores: Stores) -> str:
 BLOCKS: dict[str, Callable[[Stores], str]] = {
     block.__name__: block
     for block in (
-        *(table1_short, table1, fig4, sensitivity, vote, table2_short, table2, hands, holding),
+        *(table1_short, table1, fig4, sensitivity, vote, readouts, changed_body),
+        *(table2_short, table2, hands, holding),
         *(
             sizes,
             engines,
             sides,
             interference,
             periods,
-            ppo_reach,
-            grasping,
             solved,
             tuning,
             roster,
         ),
+        *STUDY_BLOCKS,
     )
 }
 """The tables by name."""

@@ -15,7 +15,7 @@ from typing import Any
 
 from gym_babble.files.write import write_file
 from gym_babble.study.versions import versions
-from results import pages
+from results import pages, published
 from results.stores import ROOT, STORES, Stores, path_of
 
 
@@ -54,13 +54,17 @@ def measure(name: str) -> None:
 def main(words: list[str]) -> None:
     """Measures the named stores, or all, and writes the pages."""
     parser = argparse.ArgumentParser(prog="results.run", description=__doc__)
-    parser.add_argument("stores", nargs="*", metavar="NAME", help=f"of {', '.join(STORES)}; or all")
+    names = (*STORES, published.NAME)
+    parser.add_argument("stores", nargs="*", metavar="NAME", help=f"of {', '.join(names)}; or all")
     arguments = parser.parse_args(words)
-    unknown = set(arguments.stores) - set(STORES)
+    unknown = set(arguments.stores) - set(names)
     if unknown:
-        parser.error(f"{', '.join(sorted(unknown))}: not one of {', '.join(STORES)}")
-    for name in arguments.stores or STORES:
-        measure(name)
+        parser.error(f"{', '.join(sorted(unknown))}: not one of {', '.join(names)}")
+    for name in arguments.stores or names:
+        if name == published.NAME:
+            published.run()
+        else:
+            measure(name)
     pages.write(Stores())
 
 

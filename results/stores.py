@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections import defaultdict
 from pathlib import Path
-from statistics import fmean
 from typing import Any
 
-from gym_babble.study.rates import counted, over_seeds, paper_tally
-from gym_babble.study.stored import Study
+from gym_babble.study.rates import paper_tally
+from results import published
 
 ROOT = Path(__file__).resolve().parent.parent
 FOLDER = ROOT / "results"
@@ -49,9 +47,16 @@ STORES: dict[str, dict[str, str]] = {
     "solved": {id_: f"python examples/solvable.py --ids {id_}" for id_ in SOLVED},
     "sensitivity": {"rows": "python examples/sensitivity.py"},
     "vote": {"rows": "python examples/obstacle_alone.py"},
+    "readouts": {
+        "obstacle": "python examples/readouts.py --bodies paper --seeds 2 --movements 20000 "
+        '--networks "obstacle, Eq. 7" "fine obstacle, Hebb"',
+    },
+    "changed_body": {
+        "hebb": "python examples/changed_body.py --ppo 0 --movements 2000 --repair 250 1000 "
+        "--seeds 1 --tests 500",
+    },
     "fig4": {"paper": "gym-babble reproduce fig4"},
     "fig5": {"paper": "gym-babble reproduce fig5"},
-    "grasp": {"hebb": "gym-babble compare --task grasp --agents hebb-paper --seeds 3"},
     "table2": {"paper": "gym-babble reproduce table2 --seeds 5 --cases 300"},
     "table2_small": {
         "paper": "gym-babble reproduce table2 --seeds 6 --cases 40 --babbles 200 --hold-trials 1"
@@ -72,45 +77,13 @@ STORES: dict[str, dict[str, str]] = {
 }
 """For each store its runs, each with its command; `--json` is added."""
 
-STUDIES = {
-    "ppo_reach": ROOT / "docs" / "studies" / "ppo_reach.json",
-    "ppo_grasp": ROOT / "gym_babble" / "study" / "results" / "ppo_grasp.json",
-}
-"""Stored studies of PPO."""
-
 TUNING = ROOT / "docs" / "studies" / "tuning"
 """Folder of what examples/tune.py wrote."""
-
-LEARNT_FROM = ("movements", "control_steps", "seconds", "processor_seconds")
 
 
 def path_of(name: str) -> Path:
     """The file of a store."""
-    return STUDIES.get(name, FOLDER / f"{name}.json")
-
-
-def of_study(path: Path) -> dict[str, Any]:
-    """Means and ranges over the seeds of each preset and length, by names like `grasp-2500000`."""
-    groups = defaultdict(list)
-    for run in Study.read(path).runs:
-        groups[f"{run.preset}-{run.steps}"].append(run)
-    return {
-        name: {
-            "preset": runs[0].preset,
-            "steps": runs[0].steps,
-            **_over_runs([run.counts for run in runs]),
-            "by_size": {
-                size: _over_runs([run.by_size[size] for run in runs]) for size in runs[0].by_size
-            },
-            **{what: fmean(getattr(run, what) for run in runs) for what in LEARNT_FROM},
-        }
-        for name, runs in groups.items()
-    }
-
-
-def _over_runs(counts: list[dict[str, int]]) -> dict[str, Any]:
-    names = [name for name in counts[0] if name != "cases"]
-    return over_seeds([counted(one) for one in counts], names)
+    return FOLDER / f"{name}.json"
 
 
 def derived(stores: Stores) -> dict[str, float]:
@@ -128,7 +101,7 @@ def derived(stores: Stores) -> dict[str, float]:
 
 
 class Stores(dict[str, Any]):
-    """The stores by name: what each run printed, or the study. They are read when needed."""
+    """The stores by name, read when needed: what each run printed, or the study's numbers."""
 
     def __missing__(self, name: str) -> Any:
         """Reads a store."""
@@ -137,8 +110,8 @@ class Stores(dict[str, Any]):
         elif name == "tuning":
             files = sorted(TUNING.glob("*.json"))
             self[name] = [json.loads(path.read_text(encoding="utf-8")) for path in files]
-        elif name in STUDIES:
-            self[name] = of_study(STUDIES[name])
+        elif name == published.NAME:
+            self[name] = published.document()
         else:
             stored = json.loads(path_of(name).read_text(encoding="utf-8"))
             self[name] = {run: found["printed"] for run, found in stored["runs"].items()}

@@ -171,7 +171,10 @@ def test_an_argument_of_any_kind_is_taken_or_refused_at_once(name, argument):
     [
         (lambda: HebbBabbling(threads=-1), r"threads = -1 .*\[1, 1024\]"),
         (lambda: HebbBabbling(seed="1"), r"seed = '1' .*2\^64"),
-        (lambda: HebbBabbling(variant=None), "variant = None is not one of paper, conjunctive"),
+        (
+            lambda: HebbBabbling(variant=None),
+            "variant = None is not one of paper, conjunctive, chain",
+        ),
         (lambda: HebbBabbling(quasi_static="no"), "quasi_static = 'no' is not True or False"),
         (lambda: HebbBabbling(brain=[1]), r"brain = \[1\] is not a dict"),
         (lambda: HebbBabbling(brain={"sigma": np.nan}), "brain.sigma: nan is not finite"),

@@ -20,6 +20,7 @@ def test_each_trains_and_counts_all_that_it_moved(name, task, tmp_path):
     cost = trainer.cost
     assert before.control_steps == 0
     assert cost.control_steps == cost.trials * trainer.agent.steps_per_babble >= 600
+    assert cost.control_steps == trainer.agent.control_steps
     assert 0 < cost.accepted <= cost.trials
     assert pauses[-1] == cost.control_steps
     suffix, data = trainer.save()

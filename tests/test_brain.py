@@ -36,7 +36,18 @@ def activities(n):
     return [random.random((n, size)).astype(np.float32) for size in SIZES]
 
 
-@pytest.mark.parametrize("name", brain.RULES)
+def test_the_outstar_learns_what_each_input_was_paired_with_on_average():
+    assert set(brain.RULES) == {*TWINS, "outstar"}
+    gs, as_ = activities(200)
+    gs[gs < 0.5] = 0
+    ours = brain.Association(*SIZES, brain.OutstarRule())
+    ours.learn(gs, as_)
+    used = gs.sum(0)
+    assert ours.g_mean == pytest.approx(used, rel=1e-5)
+    assert ours.weights == pytest.approx(as_.T @ gs / used, abs=1e-5)
+
+
+@pytest.mark.parametrize("name", TWINS)
 def test_each_rule_is_a_line_of_numpy(name):
     gs, as_ = activities(200)
     ours = brain.Association(*SIZES, name, **NUMBERS)

@@ -40,7 +40,7 @@ SENSES = {
 }
 FACTS = {
     "reach": ("is_success", "ever_success"),
-    "grasp": ("is_success", "ever_success", "reach", "palm_reach", "held"),
+    "grasp": ("is_success", "ever_success", "reach", "palm_reach", "held", "in_sight"),
 }
 each_task = pytest.mark.parametrize("task", TASKS)
 
@@ -104,11 +104,12 @@ def test_info_has_the_documented_keys(env_id):
     facts = FACTS["grasp" if env_id in GRASP_IDS else "reach"]
     assert env.unwrapped.interface.spec.facts == facts
     for shown in (info, stepped):
-        assert tuple(shown) == (*facts, "outcome", "reward_terms")
+        measures = tuple(one.name for one in env.unwrapped.interface.spec.measures)
+        assert tuple(shown) == (*facts, "outcome", "reward_terms", *measures)
         assert all(type(shown[fact]) is bool for fact in facts)
         assert tuple(shown["reward_terms"]) == env.unwrapped.interface.spec.reward_terms
     assert outcome_of(info) == "running"
-    assert not any(info[fact] for fact in facts)
+    assert [fact for fact in facts if info[fact]] == [fact for fact in facts if fact == "in_sight"]
 
 
 # Reproducibility.

@@ -44,6 +44,10 @@ RUNS = {
         r"\| `BabbleReachGoal-v0` \| pattern \| \d\.\d{3} \| \d\.\d{3} \|",
     ),
     "convergence.py": ("--steps 640", r"posture: 0 in 640 control steps"),
+    "grasp_chain.py": (
+        "--seeds 1 --babbles 5 --cases 2 --diameters 6",
+        r"\{'seed': 0, .+ 'held': [01]\.\d, .+\}",
+    ),
     "grasp_sides.py": ("--cases 12", r"\| all \| 12 \| \d\.\d\d \| \d\.\d\d \|"),
     "grasp_interference.py": (
         "--seeds 1 --babbles 12 --cases 8",
@@ -69,6 +73,11 @@ RUNS = {
         "--movements 20 --repair 10 --ppo 512 --ppo-repair 512 --seeds 1 --tests 9 --changes none",
         r"\| PPO \| none \| 512 \| \d\.\d{3} \| \d\.\d{3} \|",
     ),
+    "own_chain.py": ("--babbles 5 --cases 4", r"6 cm: held [01]\.\d{3}"),
+    "own_chunk.py": (
+        "--babbles 5 --cases 4",
+        r"400 steps: held [01]\.\d{3} by the chain, [01]\.\d{3} with the chunk",
+    ),
     "sac_her.py": ("--steps 4000 --cases 20", r"success 0\.\d+ \[0\.\d+, .+\]"),
 }
 ELSEWHERE = {"rllib_ppo.py"}
@@ -87,6 +96,7 @@ def test_every_example_runs_somewhere(repository):
 def test_last_line(name, repository, monkeypatch, capsys, tmp_path):
     arguments, expected = RUNS[name]
     path = repository / "examples" / name
+    monkeypatch.syspath_prepend(str(path.parent))  # As for `python examples/NAME`.
     monkeypatch.setattr(sys, "argv", [str(path), *arguments.format(folder=tmp_path).split()])
     runpy.run_path(str(path), run_name="__main__")
     last = capsys.readouterr().out.strip().splitlines()[-1]
@@ -100,6 +110,7 @@ def test_last_line(name, repository, monkeypatch, capsys, tmp_path):
         ("own_rule.py", {"hebb", "oja", "covariance"}),
         ("sensitivity.py", {"change", "success", "collision", "joint_limit", "legal_rate"}),
         ("grasp_sizes.py", {"diameter", "held", "edges"}),
+        ("grasp_chain.py", {"diameter_cm", "held", "kept", "control_steps"}),
         ("grasp_sides.py", {"rows", "all"}),
         ("solvable.py", {"id", "control", "cases", "scripted", "oracle"}),
         ("convergence.py", {"delta_posture", "posture"}),

@@ -8,7 +8,7 @@ import pytest
 from results import pages, run, stores
 from results.blocks import BLOCKS
 from results.sentences import SENTENCES
-from results.stores import STORES, STUDIES, Stores
+from results.stores import STORES, Stores
 
 PAGES = pages.names()
 
@@ -47,7 +47,6 @@ def test_a_store_has_its_commands_versions_and_date():
         assert re.fullmatch(r"\d{4}-\d\d-\d\d", document["about"]["date"])
     files = {path.stem for path in stores.FOLDER.glob("*.json")}
     assert files == STORES.keys()
-    assert all(path.exists() for path in STUDIES.values())
 
 
 @pytest.mark.parametrize(

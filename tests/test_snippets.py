@@ -14,7 +14,7 @@ PAGES = (
     "README.md",
     *(
         f"docs/{name}.md"
-        for name in ("baselines", "environments", "export", "extending", "studies")
+        for name in ("baselines", "environments", "export", "extending", "grasping", "studies")
     ),
 )
 

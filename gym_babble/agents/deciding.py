@@ -95,6 +95,11 @@ class Learning(Planner):
         """Control steps that a movement or babble takes."""
         return _core.babble_steps(self._learns_in().task)
 
+    @property
+    def control_steps(self) -> int:
+        """Control steps of all movements or babbles, whether learnt from or not."""
+        return self._babbled * self.steps_per_babble
+
     def learn(
         self,
         babbles: int,

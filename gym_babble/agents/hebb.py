@@ -42,9 +42,11 @@ if TYPE_CHECKING:
 
 __all__ = ["VARIANTS", "HebbBabbling"]
 
-VARIANTS = ("paper", "conjunctive")
+VARIANTS = ("paper", "conjunctive", "chain")
 # How many babbles the paper's agent of a task learns from, and how many it learns from together.
 PAPER = {"reach": (20_000, 250), "grasp": (1_000, 50)}
+# Trials that `practise` learns from together.
+ROUND = 50
 # The most that it learns from together, so that their experiences fit into memory.
 MOST_TOGETHER = 100_000
 # The environment that an agent from a file acts in, by its task.
@@ -62,14 +64,21 @@ class HebbBabbling(Planner):
     hand, the arm moves to a random posture, and the rule connects the eye's posture with the arm's,
     and the fovea's edges with the hand's. The sight of an object then recalls both.
 
+    The variant "chain" in grasping goes beyond the paper. In a babble the hand closes on the
+    object, carries it, opens, withdraws, turns away, looks, returns, advances until the palm
+    touches, and closes again. If the hand then feels the object between its sides, the rule
+    connects what was seen (the eye's posture and the object's size) with the arm's posture before
+    the grasp, its posture at contact, and the hand's. `practise` teaches it when to go around the
+    object first.
+
     Args:
         env: An id or an environment; it decides the task, its config is babbled with, and its
             control decides how the agent acts.
-        variant: "paper", or in reaching "conjunctive": obstacle and target in one map of pairs, and
-            a readout around the strongest neuron.
-        rule: The learning rule: "covariance" (Eq. 7, unless given), "hebb" or "oja"; an instance of
-            the classes in `gym_babble.brain`; or a function of your own
-            (`gym_babble.brain.OwnRule`).
+        variant: "paper"; in reaching "conjunctive": obstacle and target in one map of pairs, and a
+            readout around the strongest neuron; in grasping "chain": see above.
+        rule: The learning rule: "covariance" (Eq. 7; the default, except for "chain"), "hebb",
+            "oja" or "outstar" (the default for "chain"); an instance of the classes in
+            `gym_babble.brain`; or a function of your own (`gym_babble.brain.OwnRule`).
         seed: Seed of the babbling.
         quasi_static: In reaching, babble without the muscles' lag: faster, and less like the paper.
         shuffled: Pair what is seen in a babble with what was done in the one before, moment by
@@ -167,12 +176,39 @@ class HebbBabbling(Planner):
                     break
         return self
 
+    def practise(self, trials: int, *, progress_bar: bool = False) -> HebbBabbling:
+        """Tries to grasp objects all over the plane, and learns from the results; variant "chain".
+
+        A trial is an episode of region `full` with 500 control steps at most. The agent goes
+        straight to the object or around it, in one of 60 ways, and learns by reward which route
+        to take. Trial k depends on the seed, on what was babbled, and on the trials before.
+
+        Args:
+            trials: How many; a multiple of 50, as 50 are made before all of them are learnt from.
+            progress_bar: Show a bar with the time left.
+
+        Returns:
+            The agent itself.
+
+        Raises:
+            ConfigError: The number is out of bounds, another variant learns from babbles alone, or
+                the environment that the agent acts in has another config than it was made with.
+            BusyError: Another thread uses the agent.
+        """
+        trials = check_whole("trials", trials, 0, 100_000_000, "trials")
+        show = check_flag("progress_bar", progress_bar)
+        rounds = [ROUND] * (trials // ROUND) + [trials % ROUND] * (trials % ROUND > 0)
+        with self._core:
+            for some in track(rounds, "practising", total=trials, show=show):
+                self._core.practise(self._interface.task, some)
+        return self
+
     def decide(self, observation: Observation) -> NDArray[np.float64]:
         """What the maps are read out as for one observation (k,), or for n of them (n, k).
 
         In reaching, parameters (b1, b2) of a movement. In grasping, shoulder and elbow as shares of
         their ranges, and equilibrium points of thumb and finger as the paper counts them,
-        EP = 90° − flexion [deg].
+        EP = 90° − flexion [deg]; for "chain" first shoulder and elbow before the grasp.
 
         Args:
             observation: As the environment gives it, of any `obs=`; or the percepts of `babble`.
@@ -323,7 +359,7 @@ class HebbBabbling(Planner):
 
     @property
     def variant(self) -> str:
-        """Which variant this is: "paper" or "conjunctive"."""
+        """Which variant this is: "paper", "conjunctive" or "chain"."""
         return str(self.brain.get("variant", "paper"))
 
     @property
@@ -408,7 +444,17 @@ class HebbBabbling(Planner):
     @property
     def steps_per_babble(self) -> int:
         """Control steps that a babble takes."""
-        return _core.babble_steps(self._babbles_in.task)
+        return self._core.babble_steps(self._babbles_in.task)
+
+    @property
+    def practised(self) -> int:
+        """Trials that `practise` has learnt from."""
+        return self._core.practice()[0]
+
+    @property
+    def control_steps(self) -> int:
+        """Control steps of all babbles and trials, whether learnt from or not."""
+        return self.babbled * self.steps_per_babble + self._core.practice()[1]
 
     @property
     def _babbles_in(self) -> Interface:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from gym_babble import _core
 from gym_babble.agents.acting import EnvArguments, arguments_for, carried
-from gym_babble.agents.base import predictor
+from gym_babble.agents.base import interface_of, predictor
 from gym_babble.agents.deciding import Learning, key_of
 from gym_babble.agents.goal_babbling import GoalBabbling
 from gym_babble.agents.hebb import HebbBabbling
@@ -20,6 +20,7 @@ from gym_babble.agents.models import fitted, is_model, load_model, load_normaliz
 from gym_babble.agents.neighbours import NearestNeighbours
 from gym_babble.agents.reference import Oracle, Random, ReflexOnly, Scripted
 from gym_babble.agents.reward_hebb import RewardHebb
+from gym_babble.agents.trained import TRAINED, trained_file
 from gym_babble.checks import check_path
 from gym_babble.envs.registry import environment
 from gym_babble.errors import AgentFileError, ConfigError
@@ -56,19 +57,27 @@ class LoadedAgent:
     arguments: EnvArguments
 
 
-def load_agent(path: str | Path, env: EnvLike | None = None) -> HebbBabbling | Learning:
-    """The agent in a file that `save` wrote, of any kind that learns by babbling and either task.
+def load_agent(path: str | Path, env: EnvLike | None = None) -> HebbBabbling | Learning | Any:
+    """The agent in a file that `save` wrote, or one that comes with the package.
+
+    The file has an agent that learns by babbling, of any kind and either task. Of those that come
+    with the package some are models of stable-baselines3.
 
     Args:
-        path: The file.
+        path: The file, or one of `gym_babble.agents.trained.TRAINED`, as "reach.hebb-paper".
         env: Environment to act in; if not given, one of its task with the config that it babbled
-            with.
+            with, or that a trained model learnt in.
 
     Raises:
         FileNotFoundError: There is no such file.
         AgentFileError: The file is cut short, altered, or not an agent.
         ConfigError: It cannot act in the environment.
+        MissingExtraError: It needs stable-baselines3, which is not installed.
     """
+    if isinstance(path, str) and path in TRAINED:
+        path = trained_file(path)
+        if path.suffix == ".zip":
+            return _model(path, env)
     data = check_path("path", path).read_bytes()
     try:
         keys = _core.tensor_keys(data)
@@ -76,6 +85,16 @@ def load_agent(path: str | Path, env: EnvLike | None = None) -> HebbBabbling | L
         raise AgentFileError(f"{path}: {error}") from error
     cls = next((IN_FILES[key] for key in keys if key in IN_FILES), HebbBabbling)
     return cls.load(path, env)
+
+
+def _model(path: Path, env: EnvLike | None) -> Any:
+    """A model that acts where it learnt, or in an environment of the same control and body."""
+    model = load_model(path)
+    if env is not None:
+        given = EnvArguments.of(interface_of(env))
+        fitted(model, given, any_obs=False)
+        arguments_for(carried(model), None, given.config, given.options)
+    return model
 
 
 def acting_agent(
@@ -113,11 +132,11 @@ def named_agent(
     """An agent by name, from a file, or your own.
 
     Args:
-        name: "random", "scripted", "oracle" or "reflex-only"; a file that `save` of an agent that
-            babbles wrote ("./random" if
-            it is called like one of these agents); a zip that stable-baselines3 wrote, which holds
-            pickled Python: load only those you trust; or "module:Class", a class of your own, found
-            from the current folder (see `own_agent`).
+        name: "random", "scripted", "oracle" or "reflex-only"; one of
+            `gym_babble.agents.trained.TRAINED`; a file that `save` of an agent that babbles wrote
+            ("./random" if it is called like one of these agents); a zip that stable-baselines3
+            wrote, which holds pickled Python: load only those you trust; or "module:Class", a class
+            of your own, found from the current folder (see `own_agent`).
         env_id: Environment to act in. If not given, BabbleReachPattern-v0, or BabbleGrasp-v0 for an
             agent that has learnt to grasp. A class of your own needs it unless it has an attribute
             `env`; a zip needs it, and the option `control`, unless `train_tuned` trained the model.
@@ -136,7 +155,7 @@ def named_agent(
     if env_id is not None:
         environment(env_id)
     options = options or {}
-    path = Path(name)
+    path = trained_file(name) if name in TRAINED else Path(name)
     is_zip = path.is_file() and zipfile.is_zipfile(path)
     if vec_normalize is not None and not is_zip:
         raise ConfigError(f"{name} is not a zip of stable-baselines3: VecNormalize is for these")
@@ -146,7 +165,7 @@ def named_agent(
         return _own(name, env_id, config, seed, options)
     if not path.is_file():
         raise FileNotFoundError(
-            f"{name}: no such file; agents by name are {', '.join(REFERENCES)}, "
+            f"{name}: no such file; agents by name are {', '.join((*REFERENCES, *TRAINED))}, "
             "and one of your own is module:Class"
         )
     if not is_zip:

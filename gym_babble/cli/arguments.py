@@ -53,7 +53,7 @@ Seeds = Annotated[int, typer.Option(min=1, help="Number of seeds: --seed, --seed
 Cases = Annotated[int, typer.Option(min=1, help="Tests for each seed.")]
 Movements = Annotated[int, typer.Option(min=1, help="Legal movements to learn from (reaching).")]
 Babbles = Annotated[int, typer.Option(min=1, help="Babbles to learn from (grasping).")]
-Variant = Annotated[str, typer.Option(help="Variant of the agent (reaching).", **one_of(VARIANTS))]
+Variant = Annotated[str, typer.Option(help="Variant of the agent.", **one_of(VARIANTS))]
 QuasiStatic = Annotated[
     bool, typer.Option("--quasi-static", help="Babble without the muscles' lag: faster (reaching).")
 ]

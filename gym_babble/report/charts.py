@@ -10,7 +10,7 @@ from gym_babble.viz.charts import Band, Bar, bands, bars
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["Chart", "final_charts", "learning_charts"]
+__all__ = ["Chart", "band_of", "final_charts", "learning_charts"]
 
 
 class Chart(NamedTuple):
@@ -72,13 +72,14 @@ def learning_charts(task: dict[str, Any]) -> list[Chart]:
     charts = []
     for axis in dict.fromkeys(axis for agent in learners for axis in agent["curve"]):
         words = axis_words(task, axis)
-        lines = [_band(agent, axis) for agent in learners if axis in agent["curve"]]
+        lines = [band_of(agent, axis) for agent in learners if axis in agent["curve"]]
         figure = bands(lines, x=words, y="success at checkpoints", log=True, dotted=paper)
         charts.append(Chart(f"{task['name']}.curve.{axis}", figure, f"Success against {words}."))
     return charts
 
 
-def _band(agent: dict[str, Any], axis: str) -> Band:
+def band_of(agent: dict[str, Any], axis: str) -> Band:
+    """The learning curve of an agent along an axis."""
     points, runs = agent["curve"][axis]["points"], agent["curve"][axis]["runs"]
     sure = [one for one in points if one["low"] is not None]
     return Band(

@@ -97,6 +97,13 @@ ROSTER = {
         tasks={"reach": Place(PATTERN, 24_400_000, "obstacle × eye", (GENERATORS,))},
         settings={"variant": "conjunctive"},
     ),
+    "hebb-chain": RosterAgent(
+        title="Hebb chain",
+        trainer="babbling:hebb",
+        tasks={"grasp": Place(GRASP, 500_000, "eye and size", (REFLEX, IN_HAND))},
+        settings={"variant": "chain"},
+        in_compare=False,
+    ),
     "nearest-neighbour": RosterAgent(
         title="Nearest neighbours",
         trainer="babbling:nearest_neighbours",

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["DASHES", "SERIES", "Band", "Bar", "bands", "bars", "look"]
+__all__ = ["DASHES", "SERIES", "Band", "Bar", "bands", "bars", "draw_bands", "look"]
 
 SERIES = (
     "#3d7fc1",
@@ -87,9 +87,24 @@ def bands(
         steps: Lines go in steps, as of a share that changes at single values.
         dotted: Height of a dotted line, as a value of the paper.
     """
+    figure, (ax,) = row_of_axes((4.1, 3.1), 1)
+    draw_bands(ax, lines, x=x, y=y, log=log, steps=steps, dotted=dotted)
+    return figure
+
+
+def draw_bands(
+    ax: Axes,
+    lines: Sequence[Band],
+    *,
+    x: str,
+    y: str,
+    log: bool = False,
+    steps: bool = False,
+    dotted: float | None = None,
+) -> None:
+    """Draws lines with their intervals into axes; all else is as for `bands`."""
     from matplotlib.ticker import NullFormatter
 
-    figure, (ax,) = row_of_axes((4.1, 3.1), 1)
     for line in lines:
         colour, dash = look(line.series)
         for xs, ys in line.runs:
@@ -115,7 +130,6 @@ def bands(
         ax.set_xscale("log")
         ax.xaxis.set_minor_formatter(NullFormatter())
     ax.grid(axis="y", color=GRID, lw=0.6)
-    return figure
 
 
 @styled

@@ -5,6 +5,7 @@ use std::error::Error;
 use std::path::Path;
 use std::sync::Arc;
 
+use babble_agent::grasp::GraspBabbling;
 use babble_agent::{
     GraspBrain, GraspNetwork, Learner, Network, ReachBabbling, ReachBrain, ReachNetwork, Variant,
 };
@@ -97,7 +98,7 @@ fn agents() -> Result<()> {
     };
     agent(
         "grasp",
-        &Learner::<GraspNetwork>::new(brain, &grasp, 1, ())?,
+        &Learner::<GraspNetwork>::new(brain, &grasp, 1, GraspBabbling::InHand)?,
     )
 }
 

@@ -28,7 +28,7 @@ ACTS_IN = {"reach": "BabbleReachPattern-v0", "grasp": "BabbleGrasp-v0"}
 
 
 class BabblingTrainer:
-    """Trains an agent with `learn(babbles)`, `babbled`, `learnt` and `steps_per_babble`.
+    """Trains an agent with `learn(babbles)`, `babbled`, `learnt` and `control_steps`.
 
     Args:
         agent: The agent.
@@ -45,7 +45,7 @@ class BabblingTrainer:
         return Cost(
             trials=self.agent.babbled,
             accepted=self.agent.learnt,
-            control_steps=self.agent.babbled * self.agent.steps_per_babble,
+            control_steps=self.agent.control_steps,
         )
 
     def train(self, control_steps: int, pause: Callable[[], None]) -> None:

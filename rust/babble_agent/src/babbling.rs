@@ -89,7 +89,7 @@ pub trait Babble: Task {
     ) -> Result<Vec<Self::Experience>, EnvError>;
 
     /// Control steps that a babble takes.
-    fn babble_steps(&self) -> usize;
+    fn babble_steps(&self, options: Self::Options) -> usize;
 
     /// Whether an experience can be learnt from.
     fn is_learnable(experience: &Self::Experience) -> bool;

@@ -11,15 +11,16 @@ use babble_env::{AnyTask, Config, Executor, GraspTask, Outcome, ReachTask, Task,
 use serde_json::Value;
 
 use crate::babbling::{Babble, Babbling, Column, babble};
+use crate::chain::ChainNetwork;
 use crate::error::AgentError;
 use crate::grasp::babbling::POSTURES;
 use crate::grasp::policy::{self as grasping, GraspPolicy, RandomActions};
-use crate::grasp::{self, GraspNetwork};
-use crate::learner::Learner;
+use crate::grasp::{self, GraspBabbling, GraspNetwork};
+use crate::learner::{Learner, Practice};
 use crate::network::{Network, Percept, Recall};
 use crate::policy::{Decisions, Policy, Random};
-use crate::reach::ReachNetwork;
 use crate::reach::policy::{self as reaching, ReachPolicy};
+use crate::reach::{ReachBabbling, ReachNetwork};
 use crate::rule::RuleOfOnesOwn;
 use crate::tensors;
 
@@ -146,6 +147,20 @@ pub trait AnyLearner: Any + fmt::Debug + Send + Sync {
         executor: &mut Executor,
     ) -> Result<(), AgentError>;
 
+    /// As [`Learner::practise`].
+    fn practise(
+        &mut self,
+        task: &Arc<dyn AnyTask>,
+        n: usize,
+        executor: &mut Executor,
+    ) -> Result<(), AgentError>;
+
+    /// As [`Learner::practice`].
+    fn practice(&self) -> Practice;
+
+    /// Control steps that a babble takes in a task.
+    fn babble_steps(&self, task: &Arc<dyn AnyTask>) -> Result<usize, AgentError>;
+
     /// Names of the associations' tensors, and the associations.
     fn associations(&self) -> Vec<(&'static str, &Association)>;
 
@@ -235,6 +250,25 @@ impl<N: Network> AnyLearner for Learner<N> {
         Self::learn_by(self, rule, &task, n, executor)
     }
 
+    fn practise(
+        &mut self,
+        task: &Arc<dyn AnyTask>,
+        n: usize,
+        executor: &mut Executor,
+    ) -> Result<(), AgentError> {
+        let task = downcast::<N::Task>(task).ok_or_else(other_task)?;
+        Self::practise(self, &task, n, executor)
+    }
+
+    fn practice(&self) -> Practice {
+        Self::practice(self)
+    }
+
+    fn babble_steps(&self, task: &Arc<dyn AnyTask>) -> Result<usize, AgentError> {
+        let task = downcast::<N::Task>(task).ok_or_else(other_task)?;
+        Ok(task.babble_steps(self.babbling.options()))
+    }
+
     fn associations(&self) -> Vec<(&'static str, &Association)> {
         let names = N::PREFIXES.iter().copied();
         names.zip(self.network.associations()).collect()
@@ -290,6 +324,9 @@ pub fn learner(
         return made::<ReachNetwork>(&task, brain, seed, options);
     }
     let task = downcast::<GraspTask>(task).ok_or_else(other_task)?;
+    if brain.get("variant").is_some_and(|name| name == "chain") {
+        return made::<ChainNetwork>(&task, brain, seed, options);
+    }
     made::<GraspNetwork>(&task, brain, seed, options)
 }
 
@@ -301,6 +338,9 @@ pub fn brain_of(task: &str, variant: &str) -> Result<Value, AgentError> {
     let json = |e: serde_json::Error| tensors::file(&e);
     match task {
         ReachNetwork::TASK => serde_json::to_value(ReachNetwork::variant(variant)?).map_err(json),
+        ChainNetwork::TASK if variant == "chain" => {
+            serde_json::to_value(ChainNetwork::variant(variant)?).map_err(json)
+        }
         GraspNetwork::TASK => serde_json::to_value(GraspNetwork::variant(variant)?).map_err(json),
         _ => Err(no_learner(task)),
     }
@@ -349,6 +389,9 @@ pub fn load(bytes: &[u8]) -> Result<Box<dyn AnyLearner>, AgentError> {
     }
     if keys.iter().any(|key| key == GraspNetwork::KEY) {
         return Ok(Box::new(Learner::<GraspNetwork>::load(bytes)?));
+    }
+    if keys.iter().any(|key| key == ChainNetwork::KEY) {
+        return Ok(Box::new(Learner::<ChainNetwork>::load(bytes)?));
     }
     Err(AgentError::File {
         problem: "a safetensors file, but without an agent of gym_babble in its metadata"
@@ -450,16 +493,16 @@ pub fn babble_to(
     ))
 }
 
-/// Control steps that a babble takes in a task of any kind.
+/// Control steps that a babble of the paper takes in a task of any kind.
 ///
 /// # Errors
 /// [`AgentError::Config`] for a task without babbles.
 pub fn babble_steps(task: &Arc<dyn AnyTask>) -> Result<usize, AgentError> {
     if let Some(task) = downcast::<ReachTask>(task) {
-        return Ok(task.babble_steps());
+        return Ok(task.babble_steps(ReachBabbling::default()));
     }
     let task = downcast::<GraspTask>(task).ok_or_else(other_task)?;
-    Ok(task.babble_steps())
+    Ok(task.babble_steps(GraspBabbling::default()))
 }
 
 fn columns<T: Babble + Task>(

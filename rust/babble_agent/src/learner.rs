@@ -17,8 +17,13 @@ const VERSION: u32 = 4;
 const BABBLES: usize = 128;
 /// Experiences that are encoded and learnt together.
 const CHUNK: usize = 256;
+/// Trials of a round: they are made with the same weights, and then learnt from.
+pub const ROUND: usize = 50;
 /// More babbles than anybody makes: at 1 ms each they take 30 years.
 const MOST_BABBLES: u64 = 1_000_000_000_000;
+
+/// More steps than anybody makes.
+const MOST_STEPS: u64 = 1_000 * MOST_BABBLES;
 
 type ExperienceOf<N> = <<N as Network>::Task as Babble>::Experience;
 
@@ -33,6 +38,24 @@ pub struct Learner<N: Network> {
     config: Config,
     /// Whether percepts are paired with the action of the babble before.
     shuffled: bool,
+    /// What it has tried.
+    practice: Practice,
+}
+
+/// Trials that a network has learnt from by their reward.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Practice {
+    /// How many.
+    pub trials: u64,
+    /// Control steps that they took.
+    pub steps: u64,
+}
+
+impl Practice {
+    fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 // Derived, it would ask for a task that can be copied.
@@ -43,6 +66,7 @@ impl<N: Network> Clone for Learner<N> {
             babbling: self.babbling,
             config: self.config.clone(),
             shuffled: self.shuffled,
+            practice: self.practice,
         }
     }
 }
@@ -68,6 +92,9 @@ struct Metadata<C, O> {
     babbled: u64,
     /// How many of them were learnt from.
     learnt: u64,
+    /// What it has tried.
+    #[serde(default, skip_serializing_if = "Practice::is_none")]
+    practice: Practice,
 }
 
 impl<N: Network> Learner<N> {
@@ -82,6 +109,7 @@ impl<N: Network> Learner<N> {
         options: <N::Task as Babble>::Options,
     ) -> Result<Self, AgentError> {
         let network = N::new(brain)?;
+        let options = network.babbling(options);
         let babbling = Babbling::new(seed, options).every(network.learning_period_s())?;
         let config = task.config().clone();
         Ok(Self {
@@ -89,6 +117,7 @@ impl<N: Network> Learner<N> {
             babbling,
             config,
             shuffled: false,
+            practice: Practice::default(),
         })
     }
 
@@ -103,6 +132,12 @@ impl<N: Network> Learner<N> {
     #[must_use]
     pub const fn shuffled(&self) -> bool {
         self.shuffled
+    }
+
+    /// What it has tried.
+    #[must_use]
+    pub const fn practice(&self) -> Practice {
+        self.practice
     }
 
     /// Body and task that it babbles with.
@@ -159,6 +194,43 @@ impl<N: Network> Learner<N> {
         })
     }
 
+    /// Makes `n` more trials, and learns from their reward.
+    ///
+    /// # Errors
+    /// [`AgentError::OtherConfig`] for a task of another config than the learner's,
+    /// [`AgentError::Config`] for trials that are no whole rounds, or as [`Network::practise`]; the
+    /// learner is then as it was.
+    pub fn practise(
+        &mut self,
+        task: &N::Task,
+        n: usize,
+        executor: &mut Executor,
+    ) -> Result<(), AgentError> {
+        self.check_config(task)?;
+        if !n.is_multiple_of(ROUND) {
+            return Err(AgentError::Config {
+                field: "trials",
+                problem: format!("{n} is not a multiple of {ROUND}"),
+            });
+        }
+        let mut learning = self.clone();
+        for _ in 0..n / ROUND {
+            let Practice { trials, steps } = &mut learning.practice;
+            let seed = learning.babbling.seed();
+            *steps += learning.network.practise(task, seed, *trials, executor)?;
+            *trials += ROUND as u64;
+        }
+        *self = learning;
+        Ok(())
+    }
+
+    fn check_config(&self, task: &N::Task) -> Result<(), AgentError> {
+        match task.config().difference(&self.config)? {
+            None => Ok(()),
+            Some([field, here, there]) => Err(AgentError::OtherConfig { field, here, there }),
+        }
+    }
+
     /// Babbles until `n` more babbles can be learnt from, and lets `teach` teach them, some at a time;
     /// all or nothing.
     fn taught(
@@ -168,9 +240,7 @@ impl<N: Network> Learner<N> {
         executor: &mut Executor,
         mut teach: impl FnMut(&mut N, &[ExperienceOf<N>], &mut Executor) -> Result<(), AgentError>,
     ) -> Result<(), AgentError> {
-        if let Some([field, here, there]) = task.config().difference(&self.config)? {
-            return Err(AgentError::OtherConfig { field, here, there });
-        }
+        self.check_config(task)?;
         let mut learning = self.clone();
         let mut left = n;
         let mut before = Vec::new();
@@ -206,6 +276,7 @@ impl<N: Network> Learner<N> {
             shuffled: self.shuffled,
             babbled: self.babbling.babbled(),
             learnt: self.babbling.learnt(),
+            practice: self.practice,
         };
         let associations = self.network.associations();
         let parts: Vec<_> = N::PREFIXES
@@ -242,13 +313,15 @@ impl<N: Network> Learner<N> {
                 })?;
         }
         let (babbled, learnt) = (metadata.babbled, metadata.learnt);
-        let babbling = Babbling::resume(metadata.seed, metadata.babbling, babbled, learnt)
+        let options = network.babbling(metadata.babbling);
+        let babbling = Babbling::resume(metadata.seed, options, babbled, learnt)
             .every(network.learning_period_s())?;
         Ok(Self {
             network,
             babbling,
             config: metadata.config,
             shuffled: metadata.shuffled,
+            practice: metadata.practice,
         })
     }
 }
@@ -263,6 +336,9 @@ impl<C, O> Metadata<C, O> {
             format!("babbled = {babbled} is more than {MOST_BABBLES}")
         } else if learnt > babbled {
             format!("learnt = {learnt} is more than babbled = {babbled}")
+        } else if self.practice.trials > MOST_BABBLES || self.practice.steps > MOST_STEPS {
+            let Practice { trials, steps } = self.practice;
+            format!("practice: {trials} trials of {steps} steps are more than possible")
         } else if babbled > rarest * (learnt + 1) {
             format!("babbled = {babbled} is more than possible with learnt = {learnt}")
         } else {

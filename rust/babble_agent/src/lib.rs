@@ -2,6 +2,7 @@
 #![warn(clippy::disallowed_methods, clippy::disallowed_types)]
 
 pub mod babbling;
+pub mod chain;
 pub mod erased;
 mod error;
 pub mod grasp;
@@ -13,6 +14,7 @@ pub mod rule;
 pub mod tensors;
 
 pub use babbling::{Babble, Babbling, babble};
+pub use chain::{ChainBrain, ChainNetwork};
 pub use erased::{AnyLearner, REFERENCES, reference};
 pub use error::AgentError;
 pub use grasp::{GraspBrain, GraspNetwork};

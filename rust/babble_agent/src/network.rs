@@ -4,6 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use babble_brain::Association;
+use babble_env::Executor;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -41,6 +42,9 @@ pub struct Recall {
     pub side: usize,
 }
 
+/// How babbles of a network's task are simulated.
+pub type OptionsOf<N> = <<N as Network>::Task as Babble>::Options;
+
 /// Maps and the associations between them, which learn what a task's babbling experiences.
 pub trait Network: Clone + Send + Sync + fmt::Debug + 'static {
     /// The task whose experiences it learns from.
@@ -76,6 +80,11 @@ pub trait Network: Clone + Send + Sync + fmt::Debug + 'static {
     /// Time between two applications of the rule while a babble moves \[s\]; None for one, at its end.
     fn learning_period_s(&self) -> Option<f64> {
         None
+    }
+
+    /// How it babbles, if so is asked for: a network may babble in one way alone.
+    fn babbling(&self, asked: OptionsOf<Self>) -> OptionsOf<Self> {
+        asked
     }
 
     /// The associations, in the order of their prefixes.
@@ -160,6 +169,25 @@ pub trait Network: Clone + Send + Sync + fmt::Debug + 'static {
         Ok(())
     }
 
+    /// Tries what it has learnt, and learns from the reward: a round of trials from number `first` of a
+    /// seed on. Returns the control steps that these took.
+    ///
+    /// # Errors
+    /// [`AgentError::Config`] for a network that learns from babbles alone; an error of the task or the
+    /// executor.
+    fn practise(
+        &mut self,
+        _task: &Self::Task,
+        _seed: u64,
+        _first: u64,
+        _executor: &mut Executor,
+    ) -> Result<u64, AgentError> {
+        Err(AgentError::Config {
+            field: "practise",
+            problem: "this agent learns from babbles alone".to_owned(),
+        })
+    }
+
     /// Sets the weights (row-major) and the running averages of one association.
     ///
     /// # Errors
@@ -172,12 +200,13 @@ pub trait Network: Clone + Send + Sync + fmt::Debug + 'static {
         a_mean: &[f32],
         g_mean: &[f32],
     ) -> Result<(), AgentError> {
-        self.rule().check_weights(weights)?;
+        let rule = *self.rule();
+        rule.check_weights(weights)?;
         let mut all = self.associations_mut();
         let association = &mut *all[association];
         let mut changed = association.clone();
         changed.set_weights(weights)?;
-        changed.set_means(a_mean, g_mean)?;
+        rule.set_means(&mut changed, a_mean, g_mean)?;
         *association = changed;
         Ok(())
     }

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use babble_env::{Executor, Purpose, Stream};
 
+use crate::chain::plan::ChainPlan;
 use crate::error::AgentError;
 
 /// What an agent has decided to do in an episode, and how far it has come.
@@ -24,6 +25,8 @@ pub enum Plan {
     },
     /// A grasp.
     Grasp(Grasp),
+    /// A chain that ends in a grasp.
+    Chain(ChainPlan),
 }
 
 /// A grasp under way: the arm goes to a posture with the hand open, and the hand closes once it

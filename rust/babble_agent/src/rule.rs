@@ -3,7 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
-use babble_brain::{Association, BrainError, CovarianceRule, HebbRule, LearningRule, OjaRule};
+use babble_brain::{
+    Association, BrainError, CovarianceRule, HebbRule, LearningRule, OjaRule, OutstarRule,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::error::AgentError;
@@ -18,6 +20,8 @@ pub enum Rule {
     Hebb(HebbRule),
     /// Oja's.
     Oja(OjaRule),
+    /// Grossberg's outstar.
+    Outstar(OutstarRule),
     /// A user's own, which is not stored with the network: see [`RuleOfOnesOwn`].
     Own(OwnRule),
 }
@@ -51,7 +55,7 @@ pub type RuleOfOnesOwn<'a> =
 
 impl Rule {
     /// Names of the rules that are built in.
-    pub const NAMES: [&'static str; 3] = ["covariance", "hebb", "oja"];
+    pub const NAMES: [&'static str; 4] = ["covariance", "hebb", "oja", "outstar"];
 
     /// The numbers of a rule of the user's own, which starts from those of the paper.
     #[must_use]
@@ -68,6 +72,7 @@ impl Rule {
             Self::Covariance(rule) => rule.validate(),
             Self::Hebb(rule) => rule.validate(),
             Self::Oja(rule) => rule.validate(),
+            Self::Outstar(_) => Ok(()),
             Self::Own(OwnRule { eta, w_max, xi }) => CovarianceRule {
                 eta: *eta,
                 w_max: *w_max,
@@ -92,6 +97,7 @@ impl Rule {
             Self::Covariance(rule) => association.learn(rule, g, a)?,
             Self::Hebb(rule) => association.learn(rule, g, a)?,
             Self::Oja(rule) => association.learn(rule, g, a)?,
+            Self::Outstar(_) => association.learn_outstar(g, a)?,
             Self::Own(_) => {
                 return Err(AgentError::Config {
                     field: "rule",
@@ -109,6 +115,7 @@ impl Rule {
             Self::Covariance(rule) => rule.xi(),
             Self::Hebb(rule) => rule.xi(),
             Self::Oja(rule) => rule.xi(),
+            Self::Outstar(_) => 0.0,
             Self::Own(rule) => rule.xi,
         }
     }
@@ -119,8 +126,26 @@ impl Rule {
         match self {
             Self::Covariance(rule) => rule.w_max,
             Self::Hebb(rule) => rule.w_max,
+            // A mean of activities.
+            Self::Outstar(_) => 1.0,
             Self::Oja(_) | Self::Own(_) => f32::MAX,
         }
+    }
+
+    /// Sets the running averages of an association that somebody else wrote, or the use of its inputs.
+    ///
+    /// # Errors
+    /// As [`Association::set_means`] and [`Association::set_use`].
+    pub fn set_means(
+        &self,
+        association: &mut Association,
+        a_mean: &[f32],
+        g_mean: &[f32],
+    ) -> Result<(), BrainError> {
+        if matches!(self, Self::Outstar(_)) {
+            return association.set_use(g_mean);
+        }
+        association.set_means(a_mean, g_mean)
     }
 
     /// Checks weights that somebody else wrote.
@@ -155,6 +180,7 @@ impl fmt::Display for Rule {
             Self::Covariance(_) => "covariance",
             Self::Hebb(_) => "hebb",
             Self::Oja(_) => "oja",
+            Self::Outstar(_) => "outstar",
             Self::Own(_) => "own",
         })
     }
@@ -169,6 +195,7 @@ impl FromStr for Rule {
             "covariance" => Ok(Self::default()),
             "hebb" => Ok(Self::Hebb(HebbRule::default())),
             "oja" => Ok(Self::Oja(OjaRule::default())),
+            "outstar" => Ok(Self::Outstar(OutstarRule::default())),
             _ => Err(AgentError::Config {
                 field: "rule",
                 problem: format!("{name:?} is not one of {}", Self::NAMES.join(", ")),

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use babble_agent::grasp::Experience;
+use babble_agent::grasp::GraspBabbling::InHand;
 use babble_agent::grasp::holding::trials;
 use babble_agent::{AgentError, Babbling, GraspBrain, GraspNetwork, Network, babble};
 use babble_brain::{MapConfig, PopulationMap};
@@ -25,7 +26,7 @@ fn pool(threads: usize) -> Executor {
 
 fn experience(seed: u64, portions: &[usize], threads: usize) -> (Vec<Experience>, u64) {
     let (task, mut pool) = (task(), pool(threads));
-    let mut babbling = Babbling::new(seed, ());
+    let mut babbling = Babbling::new(seed, InHand);
     let mut all = Vec::new();
     for &n in portions {
         let found = babbling.experience(&task, n, &mut pool).unwrap();
@@ -53,9 +54,9 @@ fn babbling_is_one_sequence() {
 #[test]
 fn babbling_resumes() {
     let (task, mut pool) = (task(), pool(2));
-    let mut whole = Babbling::new(4, ());
+    let mut whole = Babbling::new(4, InHand);
     let first = whole.experience(&task, 8, &mut pool).unwrap();
-    let mut resumed = Babbling::resume(4, (), whole.babbled(), whole.learnt());
+    let mut resumed = Babbling::resume(4, InHand, whole.babbled(), whole.learnt());
     let rest = whole.experience(&task, 8, &mut pool).unwrap();
     assert_eq!(resumed.experience(&task, 8, &mut pool).unwrap(), rest);
     assert_eq!(
@@ -71,7 +72,7 @@ fn babbling_resumes() {
 fn babbles_hold_the_experiences() {
     let (kept, babbled) = experience(4, &[6], 2);
     let all = babble(
-        &Babbling::new(4, ()),
+        &Babbling::new(4, InHand),
         &task(),
         babbled as usize,
         &mut pool(2),
@@ -81,7 +82,7 @@ fn babbles_hold_the_experiences() {
     let found: Vec<_> = all.iter().filter(|one| one.is_kept()).cloned().collect();
     assert_eq!(found, kept);
     let open = task_with(r#"{"body": {"grip": {"reflex_deg": [0, 0]}}}"#);
-    let lost = babble(&Babbling::new(4, ()), &open, 3, &mut pool(2)).unwrap();
+    let lost = babble(&Babbling::new(4, InHand), &open, 3, &mut pool(2)).unwrap();
     let lost = lost.concat();
     assert_eq!(lost.len(), 3);
     assert!(
@@ -98,7 +99,7 @@ fn babbles_hold_the_experiences() {
 fn a_babble_can_be_learnt_from_along_its_movement() {
     let along = |portions: &[usize], threads: usize| {
         let (task, mut pool) = (task(), pool(threads));
-        let mut babbling = Babbling::new(4, ()).every(Some(0.5)).unwrap();
+        let mut babbling = Babbling::new(4, InHand).every(Some(0.5)).unwrap();
         let each = portions.iter();
         let each = each.map(|&n| babbling.experience(&task, n, &mut pool).unwrap());
         let all: Vec<Experience> = each.flatten().collect();
@@ -119,8 +120,8 @@ fn a_babble_can_be_learnt_from_along_its_movement() {
             assert_eq!(two[0].diameter, two[1].diameter);
         }
     }
-    let too_long = Babbling::<GraspTask>::new(4, ()).every(Some(2.5));
-    for refused in [too_long, Babbling::new(4, ()).every(Some(f64::NAN))] {
+    let too_long = Babbling::<GraspTask>::new(4, InHand).every(Some(2.5));
+    for refused in [too_long, Babbling::new(4, InHand).every(Some(f64::NAN))] {
         let error = refused.unwrap_err().to_string();
         assert!(error.contains("learning_period_s"), "{error}");
     }
@@ -145,10 +146,12 @@ fn kept_objects_are_in_the_hand() {
         fovea,
         arm,
         hand,
+        pregrasp,
         diameter,
         outcome,
     } in &experiences
     {
+        assert_eq!(*pregrasp, None);
         assert_eq!(*outcome, Outcome::Success);
         let shares = eye.iter().chain(arm).chain(&**fovea);
         assert!(shares.clone().all(|x| (0.0..=1.0).contains(x)));
@@ -178,7 +181,7 @@ fn interrupted_babbling_is_where_it_was() {
     let task = task();
     let (whole, babbles) = experience(4, &[3], 2);
     for threads in [1, 2] {
-        let mut babbling = Babbling::new(4, ());
+        let mut babbling = Babbling::new(4, InHand);
         let mut impatient = pool(threads).interrupted_by(|| true);
         let began = Instant::now();
         let result = babbling.experience(&task, 10_000, &mut impatient);
@@ -202,7 +205,7 @@ fn nothing_held_is_an_error() {
         r#"{"body": {"grip": {"reflex_deg": [0, 0]}},
             "grasp": {"palm_reach_m": 0.01, "control_period_s": 0.02, "physics_steps": 1}}"#,
     );
-    let result = Babbling::new(0, ()).experience(&task, 64, &mut pool(2));
+    let result = Babbling::new(0, InHand).experience(&task, 64, &mut pool(2));
     match result.map(|found| found.len()) {
         Err(AgentError::NothingToLearn { learnt, babbled }) => {
             assert!(
@@ -271,6 +274,7 @@ fn made_up(n: usize) -> Vec<Experience> {
             fovea,
             arm: [share(), share()],
             hand: [90.0 * share(), 90.0 * share()],
+            pregrasp: None,
             diameter: 0.03,
             outcome: Outcome::Success,
         });
@@ -374,7 +378,7 @@ fn sight_recalls_arm_and_hand() {
     let nothing = hebb.decide(seen[0].1, &seen[0].2).unwrap();
     assert_eq!((nothing.arm, nothing.hand), ([0.5; 2], [45.0; 2]));
 
-    let mut babbling = Babbling::<GraspTask>::new(0, ());
+    let mut babbling = Babbling::<GraspTask>::new(0, InHand);
     let experiences = babbling.experience(&task, 200, &mut pool(2)).unwrap();
     assert!(babbling.babbled() < 220, "{} babbles", babbling.babbled());
     hebb.learn(&experiences).unwrap();

@@ -1,6 +1,6 @@
 //! Agents of grasping as files.
 
-use babble_agent::grasp::Experience;
+use babble_agent::grasp::{Experience, GraspBabbling};
 use babble_agent::{
     AgentError, GraspBrain, GraspNetwork, Learner, Network, ReachBabbling, ReachBrain,
     ReachNetwork, Variant,
@@ -16,7 +16,7 @@ fn agent() -> (Learner<GraspNetwork>, GraspTask, Vec<u8>) {
         squeeze_deg: 12.5,
         ..GraspBrain::default()
     };
-    let mut learner = Learner::new(brain, &task, u64::MAX, ()).unwrap();
+    let mut learner = Learner::new(brain, &task, u64::MAX, GraspBabbling::InHand).unwrap();
     learner
         .learn(&task, 6, &mut Executor::new(2).unwrap())
         .unwrap();
@@ -62,6 +62,7 @@ fn round_trip_keeps_every_bit() {
         fovea,
         arm: [0.1, 0.9],
         hand: [40.0, 20.0],
+        pregrasp: None,
         diameter: 0.03,
         outcome: Outcome::Success,
     }];

@@ -11,4 +11,4 @@ pub use association::Association;
 pub use error::BrainError;
 pub use generator::{TimeBaseGenerator, place};
 pub use maps::{ConjunctiveMap, MapConfig, PopulationMap};
-pub use rules::{CovarianceRule, HebbRule, LearningRule, OjaRule};
+pub use rules::{CovarianceRule, HebbRule, LearningRule, OjaRule, OutstarRule};

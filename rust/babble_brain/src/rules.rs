@@ -171,6 +171,13 @@ impl LearningRule for OjaRule {
     }
 }
 
+/// The outstar rule, which has no numbers: [`Association::learn_outstar`] is its equation.
+///
+/// [`Association::learn_outstar`]: crate::Association::learn_outstar
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OutstarRule {}
+
 impl Default for CovarianceRule {
     fn default() -> Self {
         Self {

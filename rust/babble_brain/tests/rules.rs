@@ -207,3 +207,26 @@ fn bad_parameters_are_named() {
     }
     assert!(toml::from_str::<CovarianceRule>("etta = 1").is_err());
 }
+
+/// The outstar's fixed point is the mean of what an input was paired with, weighted with its activity;
+/// silent inputs learn nothing. Catches a rate that does not fall, and one for all inputs.
+#[test]
+fn the_outstar_learns_a_mean() {
+    let mut association = Association::new(3, 2).unwrap();
+    let g = [1.0, 0.5, 0.0, 0.25, 0.5, 0.0, 0.75, 0.0, 0.0];
+    let a = [0.2, 1.0, 0.8, 0.0, 0.4, 0.5];
+    association.learn_outstar(&g, &a).unwrap();
+    for i in 0..3 {
+        let used: f32 = (0..3).map(|m| g[3 * m + i]).sum();
+        assert_eq!(association.g_mean()[i], used);
+        for j in 0..2 {
+            let sum: f32 = (0..3).map(|m| g[3 * m + i] * a[2 * m + j]).sum();
+            let mean = if used > 0.0 { sum / used } else { 0.0 };
+            assert!((association.weights()[3 * j + i] - mean).abs() < 1e-6);
+        }
+    }
+    let mut copy = Association::new(3, 2).unwrap();
+    copy.set_use(association.g_mean()).unwrap();
+    assert_eq!(copy.g_mean(), association.g_mean());
+    assert!(copy.set_use(&[-1.0, 0.0, 0.0]).is_err());
+}

@@ -28,6 +28,8 @@ pub enum Purpose {
     Muscles = 6,
     /// Errors of the senses in a control step.
     Senses = 7,
+    /// Trials that an agent learns from by their reward.
+    Practice = 8,
 }
 
 impl FromStr for Purpose {

@@ -243,7 +243,7 @@ fn an_interrupted_step_leaves_environments_that_need_a_reset() {
 fn hopeless(n: usize, executor: Executor) -> Batch<ReachTask> {
     let config = Config::from_json(
         r#"{"body": {"arm": {"half_width_m": 0.05}, "obstacle": {"radius_m": 0.05}},
-            "reach": {"control_period_s": 0.001, "movement_s": 8}}"#,
+            "reach": {"control_period_s": 0.001, "movement_s": 7.999}}"#,
     );
     let task = ReachTask::new(config.unwrap(), ReachOptions::default()).unwrap();
     Batch::with_executor(Arc::new(task), n, Autoreset::NextStep, executor).unwrap()

@@ -1,7 +1,7 @@
 //! What is made for grasping alone: postures, and how well the reflex holds.
 
 use babble_agent::grasp::holding::{self, Holding};
-use babble_env::GraspTask;
+use babble_env::{GraspTask, snapshot};
 use pyo3::prelude::*;
 
 use crate::task::Task;
@@ -17,6 +17,16 @@ pub(crate) fn grasp_posture(
 ) -> PyResult<Option<[f64; 2]>> {
     let task = task.downcast::<GraspTask>()?;
     Ok(task.grasp_posture(object, radius))
+}
+
+/// Whether the hand of an episode's state keeps its object without support while the arm moves for so
+/// many seconds to random postures.
+#[pyfunction]
+pub(crate) fn keeps(task: &Task, state: &[u8], seconds: f64, seed: u64) -> PyResult<bool> {
+    let task = task.downcast::<GraspTask>()?;
+    let kept = snapshot::load(&*task, state)
+        .and_then(|state| holding::keeps(&task, &state, seconds, seed));
+    kept.map_err(errors::env)
 }
 
 /// How many of `n` objects of a diameter \[m\] the reflex holds through 10 s of arm motion without

@@ -156,6 +156,25 @@ impl Learner {
         learnt.map_err(|error| raised.unwrap_or_else(|| errors::agent(error)))
     }
 
+    /// Makes `n` more trials on `task` and learns from their reward; interrupted, it has done neither.
+    fn practise(&self, py: Python<'_>, task: &Task, n: usize) -> PyResult<()> {
+        let Inner { learner, executor } = &mut *self.inner.write()?;
+        py.detach(|| learner.practise(&task.task, n, executor))
+            .map_err(errors::agent)
+    }
+
+    /// Trials that it has learnt from by their reward, and control steps that they took.
+    fn practice(&self) -> PyResult<(u64, u64)> {
+        let practice = self.inner.read()?.learner.practice();
+        Ok((practice.trials, practice.steps))
+    }
+
+    /// Control steps that one of its babbles takes in a task.
+    fn babble_steps(&self, task: &Task) -> PyResult<usize> {
+        let steps = self.inner.read()?.learner.babble_steps(&task.task);
+        steps.map_err(errors::agent)
+    }
+
     /// Actions (n, k) for flat senses (n, m) of a task, and the plans for the next call.
     fn predict<'py>(
         &self,

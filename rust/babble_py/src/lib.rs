@@ -35,7 +35,7 @@ mod _core {
         complete_config, load_config, outcomes, processors, profile_config, profiles,
     };
     #[pymodule_export]
-    use crate::grasp::{grasp_posture, hold};
+    use crate::grasp::{grasp_posture, hold, keeps};
     #[pymodule_export]
     use crate::learner::{Learner, babble, babble_steps, babble_to, brain_json, learnable_babbles};
     #[pymodule_export]

@@ -3,7 +3,10 @@
 use babble_env::tasks::grasp::{FOVEA_NEURONS, InHand};
 use babble_env::{EnvError, GraspTask, Outcome, Purpose, Stream};
 
+use serde::{Deserialize, Serialize};
+
 use crate::babbling::{Babble, Column, ColumnKind};
+use crate::chain::{self, Sequence};
 
 /// Time that the reflex closes the hand before the arm moves \[s\]; 2 \[C\].
 const CLOSING_S: f64 = 2.0;
@@ -29,6 +32,9 @@ pub struct Experience {
     pub arm: [f32; 2],
     /// Thumb and finger as they are.
     pub hand: HandPosture,
+    /// In a chain, shoulder and elbow before the grasp, as shares of their ranges; `arm` is then where
+    /// the palm touched.
+    pub pregrasp: Option<[f32; 2]>,
     /// Diameter of the object \[m\].
     pub diameter: f64,
     /// Success if the hand kept the object to the end of the babble, lost if not.
@@ -43,8 +49,19 @@ impl Experience {
     }
 }
 
+/// How an infant babbles in grasping.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum GraspBabbling {
+    /// With the object in the hand, as in the paper.
+    #[default]
+    InHand,
+    /// In a chain that ends in a grasp.
+    Chain(Sequence),
+}
+
 impl Babble for GraspTask {
-    type Options = ();
+    type Options = GraspBabbling;
     type Experience = Experience;
 
     const TRIES: usize = 1;
@@ -55,20 +72,27 @@ impl Babble for GraspTask {
     /// whenever the eye sees it. The period begins anew with each posture.
     fn babble(
         &self,
-        (): (),
+        options: GraspBabbling,
         period_s: Option<f64>,
         stream: &mut Stream,
         all: bool,
     ) -> Result<Vec<Experience>, EnvError> {
-        let mut experiences = carried(self, period_s, stream, |_, radius, stream| {
-            self.draw_free_posture(radius, stream)
-        })?;
+        let mut experiences = match options {
+            GraspBabbling::InHand => carried(self, period_s, stream, |_, radius, stream| {
+                self.draw_free_posture(radius, stream)
+            })?,
+            GraspBabbling::Chain(sequence) => vec![chain::babble(self, &sequence, stream)?],
+        };
         experiences.retain(|one| all || one.is_kept());
         Ok(experiences)
     }
 
-    fn babble_steps(&self) -> usize {
-        (BABBLE_S / self.config.grasp.control_period_s).round() as usize
+    fn babble_steps(&self, options: GraspBabbling) -> usize {
+        let seconds = match options {
+            GraspBabbling::InHand => BABBLE_S,
+            GraspBabbling::Chain(sequence) => chain::infant::seconds(&sequence),
+        };
+        (seconds / self.config.grasp.control_period_s).round() as usize
     }
 
     fn is_learnable(experience: &Experience) -> bool {
@@ -79,6 +103,7 @@ impl Babble for GraspTask {
         Experience {
             arm: other.arm,
             hand: other.hand,
+            pregrasp: other.pregrasp,
             ..experience.clone()
         }
     }
@@ -88,13 +113,19 @@ impl Babble for GraspTask {
     }
 
     fn columns(all: &[Experience]) -> Vec<Column> {
-        vec![
+        let mut columns = vec![
             Column::of("eye", ColumnKind::Percept, all, |e| e.eye),
             Column::of("fovea", ColumnKind::Percept, all, |e| *e.fovea),
             Column::of("arm", ColumnKind::Action, all, |e| e.arm),
             Column::of("hand", ColumnKind::Action, all, |e| e.hand),
             Column::of("diameter", ColumnKind::Case, all, |e| [e.diameter as f32]),
-        ]
+        ];
+        if all.iter().any(|e| e.pregrasp.is_some()) {
+            let pregrasp = |e: &Experience| e.pregrasp.unwrap_or([f32::NAN; 2]);
+            let column = Column::of("pregrasp", ColumnKind::Action, all, pregrasp);
+            columns.push(column);
+        }
+        columns
     }
 }
 
@@ -163,6 +194,7 @@ fn experience(task: &GraspTask, object: &InHand, diameter: f64) -> Experience {
         fovea,
         arm: [share[0], share[1]].map(|x| x.clamp(0.0, 1.0) as f32),
         hand: [posture[2], posture[3]].map(|flexion| (90.0 - flexion.to_degrees()) as f32),
+        pregrasp: None,
         diameter,
         outcome: Outcome::Lost,
     }

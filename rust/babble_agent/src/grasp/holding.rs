@@ -1,6 +1,6 @@
 //! How well the reflex holds: objects put at the palm, carried about without support.
 
-use babble_env::tasks::grasp::{GraspTask, InHand};
+use babble_env::tasks::grasp::{GraspState, GraspTask, InHand};
 use babble_env::{EnvError, Executor, Purpose, Stream};
 
 /// Time that the reflex closes the hand before the support goes \[s\].
@@ -45,6 +45,28 @@ impl Holding {
             flexion: [mean(0), mean(1)],
         }
     }
+}
+
+/// Whether a hand that holds an object in an episode keeps it, without support, while the arm moves for
+/// so many seconds to a random posture every half second; the hand's equilibrium points stay.
+///
+/// # Errors
+/// [`EnvError::NoGraspCase`] if the body has no such posture.
+pub fn keeps(
+    task: &GraspTask,
+    state: &GraspState,
+    seconds: f64,
+    seed: u64,
+) -> Result<bool, EnvError> {
+    let mut stream = Stream::new(Purpose::Test, seed, 1);
+    let mut object = InHand::of(state);
+    object.remove_support(task);
+    let [.., thumb, finger] = state.equilibrium;
+    for _ in 0..(seconds / CHANGE_S).round() as usize {
+        let [shoulder, elbow] = task.draw_free_posture(state.case.radius(), &mut stream)?;
+        object.pull(task, [shoulder, elbow, thumb, finger], CHANGE_S);
+    }
+    Ok(object.is_held(task))
 }
 
 /// `n` trials with the seeds 0, 1, …: the reflex closes on an object of `diameter` \[m\] in a random

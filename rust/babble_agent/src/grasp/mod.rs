@@ -7,6 +7,6 @@ mod network;
 mod oracle;
 pub mod policy;
 
-pub use babbling::{Experience, HandPosture};
+pub use babbling::{Experience, GraspBabbling, HandPosture};
 pub use network::{GraspBrain, GraspNetwork, Recalled};
 pub use oracle::Oracle;

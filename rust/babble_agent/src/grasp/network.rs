@@ -83,7 +83,7 @@ impl Network for GraspNetwork {
         }
         Err(AgentError::Config {
             field: "variant",
-            problem: format!("{name:?} is not one of paper, in grasping"),
+            problem: format!("{name:?} is not one of paper, chain, in grasping"),
         })
     }
 

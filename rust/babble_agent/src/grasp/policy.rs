@@ -126,20 +126,20 @@ impl<C: ChooseGrasp> GraspPolicy<C> {
         }
         executor.map(0..all.len(), |i, _| choose(all[i]))
     }
+}
 
-    /// The action of a posture \[rad\] that the equilibrium points are to take.
-    fn towards(&self, wanted: [f64; 4], senses: &[f32], action: &mut [f32]) {
-        let unit = self.task.config.grasp.delta_posture_deg.to_radians();
-        for (i, &[low, high]) in self.task.robot.ranges().iter().enumerate() {
-            let asked = if self.task.options.control == Control::Posture {
-                2.0 * (wanted[i] - low) / (high - low) - 1.0
-            } else {
-                // The equilibrium point is angle plus stretch.
-                let angle = low + f64::from(senses[POSTURE[i]]) * (high - low);
-                (wanted[i] - (angle + f64::from(senses[at::STRETCH + i]))) / unit
-            };
-            action[i] = asked.clamp(-1.0, 1.0) as f32;
-        }
+/// The action of a posture \[rad\] that the equilibrium points are to take.
+pub(crate) fn towards(task: &GraspTask, wanted: [f64; 4], senses: &[f32], action: &mut [f32]) {
+    let unit = task.config.grasp.delta_posture_deg.to_radians();
+    for (i, &[low, high]) in task.robot.ranges().iter().enumerate() {
+        let asked = if task.options.control == Control::Posture {
+            2.0 * (wanted[i] - low) / (high - low) - 1.0
+        } else {
+            // The equilibrium point is angle plus stretch.
+            let angle = low + f64::from(senses[POSTURE[i]]) * (high - low);
+            (wanted[i] - (angle + f64::from(senses[at::STRETCH + i]))) / unit
+        };
+        action[i] = asked.clamp(-1.0, 1.0) as f32;
     }
 }
 
@@ -174,7 +174,7 @@ impl<C: ChooseGrasp> Policy for GraspPolicy<C> {
             wanted[..2].copy_from_slice(&grasp.arm());
         }
         grasp.step += 1;
-        self.towards(wanted, senses, action);
+        towards(&self.task, wanted, senses, action);
     }
 }
 

@@ -94,7 +94,7 @@ impl Babble for ReachTask {
         Ok(vec![experience])
     }
 
-    fn babble_steps(&self) -> usize {
+    fn babble_steps(&self, _options: ReachBabbling) -> usize {
         self.config.reach.movement_steps() + self.settle_steps()
     }
 

@@ -169,7 +169,7 @@ impl<C: ChooseMovement> Policy for ReachPolicy<C> {
                     action[i] = self.towards(i, share[i], senses);
                 }
             }
-            Plan::Steps | Plan::Grasp(_) => action.fill(0.0),
+            Plan::Steps | Plan::Grasp(_) | Plan::Chain(_) => action.fill(0.0),
         }
     }
 }

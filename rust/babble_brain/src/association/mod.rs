@@ -1,6 +1,7 @@
 //! All-to-all connections between two maps: weights, running averages, learning and recall (Eq. 4).
 
 mod block;
+mod outstar;
 
 use block::{BLOCK, Block, LANES};
 
@@ -139,7 +140,7 @@ impl Association {
         &self.a_mean
     }
 
-    /// Running averages ḡ of the input neurons.
+    /// Running averages ḡ of the input neurons, or their use u if the outstar rule teaches them.
     #[must_use]
     pub fn g_mean(&self) -> &[f32] {
         &self.g_mean

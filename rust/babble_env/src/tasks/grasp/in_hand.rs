@@ -3,11 +3,12 @@
 
 use std::collections::VecDeque;
 
-use babble_body::robot::{Ball, Setup, World, towards};
+use babble_body::robot::{Ball, Posture, Setup, Touch, World, towards};
 use babble_eye::Gaze;
 
 use super::case::GraspCase;
 use super::sight::{FOVEA_NEURONS, see};
+use super::state::GraspState;
 use super::task::GraspTask;
 use crate::error::EnvError;
 use crate::stream::Stream;
@@ -52,7 +53,17 @@ impl InHand {
         }
     }
 
-    /// The same in a random posture in which the object is clear of the upper arm.
+    /// The world of an episode as it is.
+    #[must_use]
+    pub fn of(state: &GraspState) -> Self {
+        Self {
+            world: state.world.clone(),
+            case: state.case,
+            enclosed: VecDeque::new(),
+        }
+    }
+
+    /// An object at the palm in a random posture in which the object is clear of the upper arm.
     ///
     /// # Errors
     /// [`EnvError::NoGraspCase`] if there is no such posture.
@@ -77,7 +88,13 @@ impl InHand {
     /// Returns how deep the object was pressed into arm and hand at most \[m\].
     pub fn carry(&mut self, task: &GraspTask, arm: [f64; 2], seconds: f64) -> f64 {
         let [thumb, finger] = task.reflex();
-        let drive = towards([arm[0], arm[1], thumb, finger]);
+        self.pull(task, [arm[0], arm[1], thumb, finger], seconds)
+    }
+
+    /// The muscles of arm and hand pulling to a posture \[rad\], for some time \[s\]. Returns how deep
+    /// the object was pressed into arm and hand at most \[m\].
+    pub fn pull(&mut self, task: &GraspTask, posture: Posture, seconds: f64) -> f64 {
+        let drive = towards(posture);
         let steps = (seconds / task.config.grasp.physics_step_s()).round() as usize;
         let mut deepest: f64 = 0.0;
         for _ in 0..steps {
@@ -94,6 +111,12 @@ impl InHand {
     /// Takes the support away.
     pub fn remove_support(&mut self, task: &GraspTask) {
         task.robot.remove_support(&mut self.world);
+    }
+
+    /// Which links touched the object in the last physics step, and how hard.
+    #[must_use]
+    pub fn touch(&self, task: &GraspTask) -> Touch {
+        task.robot.touch(&self.world)
     }
 
     /// Whether the hand holds the object, as in an episode: the object is before the palm, and for the

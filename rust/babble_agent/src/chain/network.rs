@@ -1,0 +1,254 @@
+//! What is seen recalls the posture before the grasp, the posture at contact, and the hand's.
+
+use std::sync::Arc;
+
+use babble_brain::{Association, PopulationMap};
+use babble_env::tasks::grasp::{FOVEA_NEURONS, SENSES, at};
+use babble_env::{Executor, GraspTask};
+
+use super::acting::ChainPolicy;
+use super::brain::ChainBrain;
+use super::code::{Input, arm, hand};
+use super::practice;
+use super::route::{RouteChoice, Routes};
+use crate::error::AgentError;
+use crate::grasp::{Experience, GraspBabbling};
+use crate::learner::ROUND;
+use crate::network::{Activities, Network, Percept, Recall};
+use crate::policy::{Policy, observation};
+use crate::rule::Rule;
+
+/// Associations that learn from babbles.
+const BABBLED: usize = 3;
+
+/// What the sight of an object recalls.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Recalled {
+    /// Shoulder and elbow before the grasp, as shares of their ranges.
+    pub pregrasp: [f64; 2],
+    /// Shoulder and elbow when the palm touches, likewise.
+    pub contact: [f64; 2],
+    /// Thumb and finger around the object, EP = 90° − flexion \[deg\].
+    pub hand: [f64; 2],
+}
+
+/// A network that learns from chains of babbles, and by reward when to go around an object.
+#[derive(Debug, Clone)]
+pub struct ChainNetwork {
+    config: ChainBrain,
+    input: Input,
+    arm: PopulationMap,
+    hand: PopulationMap,
+    /// Input to the posture before the grasp, at contact, and to the hand.
+    recall: [Association; BABBLED],
+    routes: Routes,
+}
+
+impl Network for ChainNetwork {
+    type Task = GraspTask;
+    type Config = ChainBrain;
+
+    const TASK: &'static str = "grasp";
+    const KEY: &'static str = "gym_babble.chain";
+    const PREFIXES: &'static [&'static str] =
+        &["pregrasp.", "contact.", "hand.", "route.", "tried."];
+
+    fn variant(name: &str) -> Result<ChainBrain, AgentError> {
+        if name == "chain" {
+            return Ok(ChainBrain::default());
+        }
+        Err(AgentError::Config {
+            field: "variant",
+            problem: format!("{name:?} is not chain"),
+        })
+    }
+
+    fn new(config: ChainBrain) -> Result<Self, AgentError> {
+        config.validate()?;
+        let (input, arm, hand) = (Input::new(&config)?, arm(&config)?, hand(&config)?);
+        let to = |map: &PopulationMap| Association::new(input.neurons(), map.len());
+        Ok(Self {
+            recall: [to(&arm)?, to(&arm)?, to(&hand)?],
+            routes: Routes::new()?,
+            input,
+            arm,
+            hand,
+            config,
+        })
+    }
+
+    fn config(&self) -> &ChainBrain {
+        &self.config
+    }
+
+    fn rule(&self) -> &Rule {
+        &self.config.rule
+    }
+
+    fn babbling(&self, _asked: GraspBabbling) -> GraspBabbling {
+        GraspBabbling::Chain(self.config.babble)
+    }
+
+    fn associations(&self) -> Vec<&Association> {
+        let routes = [&self.routes.value, &self.routes.tried];
+        self.recall.iter().chain(routes).collect()
+    }
+
+    fn associations_mut(&mut self) -> Vec<&mut Association> {
+        let routes = [&mut self.routes.value, &mut self.routes.tried];
+        self.recall.iter_mut().chain(routes).collect()
+    }
+
+    fn encode(&self, experiences: &[Experience]) -> Result<Vec<Activities>, AgentError> {
+        let mut g = Vec::with_capacity(experiences.len() * self.input.neurons());
+        for experience in experiences {
+            babble_brain::error::check_activity("fovea", &*experience.fovea)?;
+            g.extend(self.input.encode(experience.eye, &*experience.fovea)?);
+        }
+        let encode = |map: &PopulationMap,
+                      pair: fn(&Experience) -> [f32; 2]|
+         -> Result<Activities, AgentError> {
+            let pairs = experiences.iter().flat_map(|one| pair(one).map(f64::from));
+            let mut a = vec![0.0; experiences.len() * map.len()];
+            map.encode(&pairs.collect::<Vec<_>>(), &mut a)?;
+            Ok(Activities { g: g.clone(), a })
+        };
+        Ok(vec![
+            encode(&self.arm, |e| e.pregrasp.unwrap_or(e.arm))?,
+            encode(&self.arm, |e| e.arm)?,
+            encode(&self.hand, |e| e.hand)?,
+        ])
+    }
+
+    /// (size, tilt, pan) three times, or (tilt, pan); then the routes' (elbow before the grasp, elbow,
+    /// turn of the shoulder) twice.
+    fn input_shapes(&self) -> Vec<Vec<usize>> {
+        let eye = self.config.eye_neurons;
+        let seen = match self.config.sizes {
+            1 => vec![eye, eye],
+            sizes => vec![sizes, eye, eye],
+        };
+        let routes = self.routes.shape();
+        vec![seen.clone(), seen.clone(), seen, routes.clone(), routes]
+    }
+
+    fn perceive_maps(&self, senses: &[f32]) -> Result<Vec<Percept>, AgentError> {
+        let activity = self.see(senses)?;
+        let names = ["pregrasp", "contact", "hand"];
+        Ok(names
+            .map(|name| Percept {
+                name,
+                activity: activity.clone(),
+            })
+            .into())
+    }
+
+    fn recall_maps(&self, senses: &[f32]) -> Result<Vec<Recall>, AgentError> {
+        let g = self.see(senses)?;
+        let names = ["pregrasp", "contact", "hand"];
+        let mut all = Vec::new();
+        for ((association, map), name) in self.recall.iter().zip(self.maps()).zip(names) {
+            let mut activity = vec![0.0; map.len()];
+            association.recall(&g, &mut activity)?;
+            all.push(Recall {
+                name,
+                activity,
+                side: self.config.neurons,
+            });
+        }
+        Ok(all)
+    }
+
+    fn decide_from(&self, senses: &[f32]) -> Result<Vec<f64>, AgentError> {
+        let Recalled {
+            pregrasp,
+            contact,
+            hand,
+        } = self.recalled(senses)?;
+        Ok([pregrasp, contact, hand].concat())
+    }
+
+    fn policy(&self, task: Arc<GraspTask>) -> Result<Box<dyn Policy + '_>, AgentError> {
+        Ok(Box::new(ChainPolicy::new(task, self)?))
+    }
+
+    fn set(
+        &mut self,
+        association: usize,
+        weights: &[f32],
+        a_mean: &[f32],
+        g_mean: &[f32],
+    ) -> Result<(), AgentError> {
+        if association >= BABBLED {
+            return self.routes.set(association - BABBLED, weights);
+        }
+        let rule = self.config.rule;
+        rule.check_weights(weights)?;
+        let mut changed = self.recall[association].clone();
+        changed.set_weights(weights)?;
+        rule.set_means(&mut changed, a_mean, g_mean)?;
+        self.recall[association] = changed;
+        Ok(())
+    }
+
+    fn practise(
+        &mut self,
+        task: &GraspTask,
+        seed: u64,
+        first: u64,
+        executor: &mut Executor,
+    ) -> Result<u64, AgentError> {
+        let trials = practice::trials(self, task, seed, first, ROUND, executor)?;
+        for trial in &trials {
+            self.routes.learn(&trial.choice, trial.reward())?;
+        }
+        Ok(trials.iter().map(|trial| u64::from(trial.steps)).sum())
+    }
+}
+
+impl ChainNetwork {
+    /// When it goes around the object, and how.
+    #[must_use]
+    pub const fn routes(&self) -> &Routes {
+        &self.routes
+    }
+
+    fn maps(&self) -> [&PopulationMap; BABBLED] {
+        [&self.arm, &self.arm, &self.hand]
+    }
+
+    /// Activity of the input map for a flat observation.
+    fn see(&self, senses: &[f32]) -> Result<Vec<f32>, AgentError> {
+        // The senses that an option adds come last.
+        let senses = observation::<SENSES>(&senses[..senses.len().min(SENSES)])?;
+        let eye = [senses[at::EYE], senses[at::EYE + 1]];
+        self.input
+            .encode(eye, &senses[at::FOVEA..][..FOVEA_NEURONS])
+    }
+
+    /// What a flat observation recalls, Eq. 4.
+    ///
+    /// # Errors
+    /// [`AgentError`] for senses of another length.
+    pub fn recalled(&self, senses: &[f32]) -> Result<Recalled, AgentError> {
+        let g = self.see(senses)?;
+        let mut pairs = [[0.0; 2]; BABBLED];
+        for ((association, map), pair) in self.recall.iter().zip(self.maps()).zip(&mut pairs) {
+            let mut a = vec![0.0; map.len()];
+            association.recall(&g, &mut a)?;
+            map.read_out(&a, pair)?;
+        }
+        let [pregrasp, contact, hand] = pairs;
+        Ok(Recalled {
+            pregrasp,
+            contact,
+            hand,
+        })
+    }
+
+    /// The route that promises most.
+    #[must_use]
+    pub fn best_route(&self, state: [f64; 3]) -> RouteChoice {
+        self.routes.best(state)
+    }
+}

@@ -29,15 +29,16 @@ impl<'a> Decomposer<'a> {
             camera,
             plane,
             view,
-            frustum: Frustum::new(&plane, &view),
+            frustum: Frustum::new(&plane, &view, 0.0),
             surfaces: Vec::new(),
         }
     }
 
-    /// From now on, leaves out surfaces outside of this window.
-    pub(crate) fn set_view(&mut self, view: Window) {
+    /// From now on, leaves out surfaces outside of this window, and shapes of which all has a smaller
+    /// inverse depth than `farthest` \[1/m\].
+    pub(crate) fn set_view(&mut self, view: Window, farthest: f64) {
         self.view = view;
-        self.frustum = Frustum::new(&self.plane, &view);
+        self.frustum = Frustum::new(&self.plane, &view, farthest);
     }
 
     /// Adds the surfaces of one primitive.
@@ -237,7 +238,7 @@ pub(crate) fn decompose<'a>(
 ) -> Decomposer<'a> {
     let mut decomposer = Decomposer::new(camera);
     if let Some(view) = view {
-        decomposer.set_view(view);
+        decomposer.set_view(view, 0.0);
     }
     decomposer.surfaces.reserve(3 * scene.len());
     for (index, primitive) in scene.iter().enumerate() {

@@ -314,6 +314,35 @@ def interference(stores: Stores) -> str:
     return markdown([*heads, "recalled in the hand"], rows)
 
 
+def basin(stores: Stores) -> str:
+    """Where along the palm a ball must lie to be held."""
+    found: dict[float, list[dict[str, Any]]] = {}
+    for row in stores["basin"]["elbow"]:
+        found.setdefault(row["diameter_cm"], []).append(row)
+    rows = []
+    for size, of_size in found.items():
+        never = [row["wrist_cm"] for row in of_size if row["held"] == 0]
+        always = [row["wrist_cm"] for row in of_size if row["held"] == 1]
+        spans = [f"{min(at)}–{max(at)}" if at else "–" for at in (never, always)]
+        rows.append([f"{size:g}", *spans, str(len(of_size) - len(never) - len(always))])
+    return markdown(
+        ["diameter [cm]", "never held [cm]", "always held [cm]", "places between"], rows
+    )
+
+
+def movements(stores: Stores) -> str:
+    """How the chain's movements change while it learns."""
+    rows = []
+    for row in stores["movements"]["rows"]:
+        cells = [f"{row['babbles']:,}", share(row["touched"]), f"{row['units']:.2f}"]
+        cells += [f"{row['straightness']:.2f}", share(row["palm_first"]), f"{row['off_deg']:.1f}"]
+        cells += [f"{row['closings']:.2f}", f"{row['seconds_to_hold']:.1f}"]
+        rows.append([*cells, *map(share, row["held"].values())])
+    heads = ["babbles", "touched", "units", "straightness", "palm first", "off [°]", "closings"]
+    sizes = [f"held, {size}" for size in stores["movements"]["rows"][0]["held"]]
+    return markdown([*heads, "to hold [s]", *sizes], rows)
+
+
 def roster(_: Stores) -> str:
     """The agents that a study can name."""
     rows = []
@@ -369,6 +398,8 @@ BLOCKS: dict[str, Callable[[Stores], str]] = {
             sides,
             interference,
             periods,
+            basin,
+            movements,
             solved,
             tuning,
             roster,

@@ -77,6 +77,8 @@ STORES: dict[str, dict[str, str]] = {
     "periods": {"rows": "python examples/grasp_learning_period.py"},
     "convergence": {"counts": "python examples/convergence.py"},
     "sides": {"scripted": "python examples/grasp_sides.py"},
+    "basin": {"elbow": "python examples/grasp_basin.py"},
+    "movements": {"rows": "python examples/grasp_movements.py"},
     "interference": {"rows": "python examples/grasp_interference.py --seeds 2"},
 }
 """For each store its runs, each with its command; `--json` is added."""

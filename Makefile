@@ -41,6 +41,8 @@ demo: setup ## Compare the agents on both tasks and write figures and tables int
 PICTURES := docs/images
 pictures: setup ## Draw the pictures of README and docs again, without those of `make bench` (some minutes)
 	$(BIN)/python examples/film.py --out $(PICTURES)/babble.gif
+	$(BIN)/python examples/film_chain.py --out $(PICTURES)/chain.gif --strip $(PICTURES)/chain.png
+	$(BIN)/python examples/grasp_basin.py --figure $(PICTURES)/basin.png
 	for figure in fig2 fig4 fig5 fig7 fig8 sight; do \
 		$(BIN)/gym-babble reproduce $$figure --out $(PICTURES)/$$figure.png || exit 1; done
 

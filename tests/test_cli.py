@@ -16,6 +16,7 @@ from gym_babble import (
     evaluate,
     export_mjcf,
     export_urdf,
+    load_agent,
     scenarios,
 )
 from gym_babble.envs.registry import TASKS
@@ -297,6 +298,19 @@ def test_reproduce_table2(run_json, tmp_path):
     grid = [size["tests"]["table2"]["by_seed"][0] for size in document["sizes"]]
     told = [int(line["cases"]) for line in lines if line["protocol"] == "table2"]
     assert told == [found["cases"] for found in grid]
+
+
+def test_the_chain_takes_the_tests_of_table_2(run, run_json, tmp_path):
+    few = ("--babbles", 2, "--variant", "chain")
+    words = ("reproduce", "table2", "--seeds", 1, "--cases", 2, "--hold-trials", 0)
+    document = run_json(*words, *few, "--out", tmp_path)
+    assert document["variant"] == "chain"
+    assert all(size["tests"]["table2"]["by_seed"][0]["cases"] for size in document["sizes"])
+    path = tmp_path / "agent"
+    assert run_json("babble", "--task", "grasp", *few, "--out", path)["variant"] == "chain"
+    assert load_agent(path).variant == "chain"
+    code, _, told = run("reproduce", "table2", "--variant", "conjunctive", "--out", tmp_path)
+    assert (code, "conjunctive" in told) == (2, True)
 
 
 @pytest.mark.parametrize("figure", ["fig7", "fig8", "sight"])

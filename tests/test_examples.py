@@ -13,6 +13,10 @@ RUNS = {
         "--movements 500 --babbles 100 --out {folder}/babble.gif",
         r".+/babble\.gif: \d+ kB",
     ),
+    "film_chain.py": (
+        "--babbles 5 200 --width 160 --out {folder}/chain.gif --strip {folder}/chain.png",
+        r".+/chain\.gif: \d+ kB",
+    ),
     "hebb_reach.py": (
         "--movements 250 --cases 50",
         r"success 0\.\d+ \[0\.\d+, .+\] \(paper: 0\.67\)",
@@ -48,6 +52,14 @@ RUNS = {
         "--seeds 1 --babbles 5 --cases 2 --diameters 6",
         r"\{'seed': 0, .+ 'held': [01]\.\d, .+\}",
     ),
+    "grasp_basin.py": (
+        "--trials 2 --diameters 2.4 --places 2.6 3.8 1.2 --figure {folder}/basin.png",
+        r"\| 2\.4 \| 3\.8 \| 1\.00 \|",
+    ),
+    "grasp_movements.py": (
+        "--babbles 0 5 --seeds 1 --cases 2 --diameters 6",
+        r"\{'babbles': 5, .+ 'held': \{'6 cm': [01]\.\d\}\}",
+    ),
     "grasp_sides.py": ("--cases 12", r"\| all \| 12 \| \d\.\d\d \| \d\.\d\d \|"),
     "grasp_interference.py": (
         "--seeds 1 --babbles 12 --cases 8",
@@ -67,7 +79,7 @@ RUNS = {
     ),
     "readouts.py": (
         "--bodies icub --movements 20 --seeds 1 --tests 10",
-        r"\| icub \| obstacle x eye, Hebb, gain 20 \| peak \| 20 \| \d\.\d{3} \| \d\.\d{3} \|",
+        r"\| icub \| obstacle x eye, Hebb \| peak \| 20 \| \d\.\d{3} \| \d\.\d{3} \|",
     ),
     "changed_body.py": (
         "--movements 20 --repair 10 --ppo 512 --ppo-repair 512 --seeds 1 --tests 9 --changes none",
@@ -111,6 +123,7 @@ def test_last_line(name, repository, monkeypatch, capsys, tmp_path):
         ("sensitivity.py", {"change", "success", "collision", "joint_limit", "legal_rate"}),
         ("grasp_sizes.py", {"diameter", "held", "edges"}),
         ("grasp_chain.py", {"diameter_cm", "held", "kept", "control_steps"}),
+        ("grasp_movements.py", {"babbles", "units", "straightness", "palm_first", "held"}),
         ("grasp_sides.py", {"rows", "all"}),
         ("solvable.py", {"id", "control", "cases", "scripted", "oracle"}),
         ("convergence.py", {"delta_posture", "posture"}),

@@ -23,12 +23,16 @@ from gym_babble.viz.panel import Panel, PanelSize
 from gym_babble.viz.scenes import check_same_task, find_cases, play_scene, stages
 from gym_babble.viz.video import film_bytes
 
+CHAIN = ("pregrasp", "contact", "hand")
 
-@pytest.fixture(scope="module", params=["paper", "conjunctive", "grasp"])
+
+@pytest.fixture(scope="module", params=["paper", "conjunctive", "grasp", "chain"])
 def learnt(request):
     """A small agent of each network; tests do not change it."""
     if request.param == "grasp":
         return HebbBabbling("BabbleGrasp-v0", seed=1).learn(20)
+    if request.param == "chain":
+        return HebbBabbling("BabbleGrasp-v0", variant="chain", seed=1).learn(20)
     return HebbBabbling(variant=request.param, seed=1, quasi_static=True).learn(250)
 
 
@@ -49,6 +53,8 @@ def test_what_is_seen_recalls_what_is_recalled(learnt):
     observation = first_observation(learnt)
     weights = [w for name, w in learnt.weights.items() if name.endswith("weights")]
     seen, recalled = learnt.perceive(observation), learnt.recall(observation)
+    if learnt.variant == "chain":  # The routes' weights are no maps of what is seen.
+        weights = weights[:3]
     assert len(seen) == len(recalled) == len(weights)
     assert next(iter(seen.values())).shape == learnt.input_shape
     for g, a, w in zip(seen.values(), recalled.values(), weights, strict=True):
@@ -150,6 +156,16 @@ def test_the_eyes_view_is_inset():
     assert_same(panel[below_its_name, left : left + size.eye], eye[size.eye // 2 :])
 
 
+def test_a_panel_says_what_happens_at_each_moment():
+    episode = play(acting_agent(Scripted()), scenarios("table1", 1)[0])
+    said = ["first"] * 5 + ["then"] * (episode.moments - 5)
+    size = PanelSize(160, 0)
+    changing = Panel("x", said, episode)
+    for moment, text in ((0, "first"), (4, "first"), (5, "then"), (10**6, "then"), (0, "first")):
+        still = Panel("x", text, episode)
+        assert_same(changing.draw(moment, size), still.draw(moment, size))
+
+
 def test_a_map_shows_its_neurons_in_their_places(learnt):
     pictures = AgentMaps(learnt).pictures(first_observation(learnt))
     for sees, weights, recalls in pictures:
@@ -158,6 +174,7 @@ def test_a_map_shows_its_neurons_in_their_places(learnt):
             ("target, obstacle", "movement"),
             ("eye", "arm"),
             ("fovea", "hand"),
+            *((f"eye, size {k} of 5", name) for k in range(1, 6) for name in CHAIN),
         }
         assert weights.title == ("weights in" if sees.title == "fovea" else "weights out")
         for picture in (sees, weights, recalls):
@@ -175,6 +192,20 @@ def test_a_map_shows_its_neurons_in_their_places(learnt):
     assert (
         np.delete(coloured.reshape(3, 10, 3, 10, 3)[:, 5, :, 5].reshape(9, 3), 2, 0) == 255
     ).all()
+
+
+def test_the_chains_maps_are_marked_within_their_margins():
+    # Of the arm's maps two neurons on each side lie beyond the joint limits; the hand's have none.
+    agent = HebbBabbling("BabbleGrasp-v0", variant="chain")
+    row, column = 4, 15
+    weights = {f"{name}.weights": agent.weights[f"{name}.weights"] for name in CHAIN}
+    for array in weights.values():
+        array[row * 21 + column] = 0.2
+    agent.weights = weights
+    pictures = AgentMaps(agent).pictures(first_observation(agent))
+    assert tuple(recalls.title for _, _, recalls in pictures) == CHAIN
+    for _, _, recalls in pictures:
+        assert recalls.mark == pytest.approx((column / 20, (20 - row) / 20), abs=1e-6)
 
 
 @pytest.mark.parametrize("name", ["movement", "arm"])

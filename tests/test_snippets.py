@@ -14,7 +14,14 @@ PAGES = (
     "README.md",
     *(
         f"docs/{name}.md"
-        for name in ("baselines", "environments", "export", "extending", "grasping", "studies")
+        for name in (
+            "baselines",
+            "beyond-the-paper",
+            "environments",
+            "export",
+            "extending",
+            "studies",
+        )
     ),
 )
 

@@ -38,12 +38,12 @@ def babble(
 ) -> None:
     """Let an agent babble and learn, and save it."""
     check_file(file, "--out")
-    settings: dict[str, Any] = {"config": config, "seed": seed}
+    settings: dict[str, Any] = {"variant": variant, "config": config, "seed": seed}
     if task == "reach":
         agent = learn_reaching(variant, movements, seed, config, quasi_static=quasi_static)
-        settings = {"variant": variant, **settings, "quasi_static": quasi_static}
+        settings["quasi_static"] = quasi_static
     else:
-        agent = learn_grasping(babbles, seed, config)
+        agent = learn_grasping(babbles, seed, config, variant=variant)
     trials, accepted = agent.babbled, agent.learnt
     names, rate = TASKS[task], accepted / trials
     if as_json:

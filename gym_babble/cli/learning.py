@@ -16,7 +16,8 @@ def learn_reaching(
     return agent.learn(movements, progress_bar=True)
 
 
-def learn_grasping(babbles: int, seed: int, config: str) -> HebbBabbling:
+def learn_grasping(babbles: int, seed: int, config: str, *, variant: str = "paper") -> HebbBabbling:
     """A Hebb agent of grasping that has learnt from babbles."""
-    agent = HebbBabbling(gymnasium.make("BabbleGrasp-v0", config=config), seed=seed)
+    env = gymnasium.make("BabbleGrasp-v0", config=config)
+    agent = HebbBabbling(env, variant, seed=seed)
     return agent.learn(babbles, progress_bar=True)

@@ -169,8 +169,8 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
             self._batch.reset(mask.tolist())
             for i in chosen:
                 self._members[i].begin()
-            shown = self._batch.all()
-            return self._observation(shown), self._infos(shown, mask)
+            shown = self._batch.all(mask.tolist())
+            return self._observation(shown), shown["infos"]
 
     def step(
         self, actions: Any
@@ -190,7 +190,7 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
                 for member in self._members:
                     member.follow()
             shown = self._batch.all()
-            infos = self._infos(shown, np.ones(self.num_envs, np.bool_))
+            infos = shown["infos"]
             if self.autoreset_mode is AutoresetMode.SAME_STEP:
                 self._add_final(infos)
             observation = self._observation(shown)
@@ -273,31 +273,6 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
         if self._interface.obs != "goal":
             return []
         return [shown["achieved_goal"], shown["desired_goal"]]
-
-    def _infos(self, shown: Mapping[str, Any], mask: NDArray[np.bool_]) -> dict[str, Any]:
-        """Infos in the layout of `VectorEnv._add_info`: each key beside its mask."""
-        spec = self._interface.spec
-        terms: dict[str, Any] = {}
-        for k, name in enumerate(spec.reward_terms):
-            terms[name] = np.where(mask, shown["terms"][:, k], 0.0)
-            terms[f"_{name}"] = mask.copy()
-        infos: dict[str, Any] = {}
-        for k, name in enumerate(spec.facts):
-            infos[name] = shown["facts"][:, k] & mask
-            infos[f"_{name}"] = mask.copy()
-        outcome: dict[str, Any] = {}
-        for name, code in self._interface.outcome_codes:
-            outcome[name] = (shown["outcome"] == code) & mask
-            outcome[f"_{name}"] = mask.copy()
-        infos["outcome"] = outcome
-        infos["_outcome"] = mask.copy()
-        infos["reward_terms"] = terms
-        infos["_reward_terms"] = mask.copy()
-        if spec.measures:
-            for name, numbers in spec.measured(shown["measures"]).items():
-                infos[name] = np.where(mask[:, None], numbers, 0.0)
-                infos[f"_{name}"] = mask.copy()
-        return infos
 
     def _add_final(self, infos: dict[str, Any]) -> None:
         """Adds `final_obs` and `final_info` of the episodes that ended within the step."""

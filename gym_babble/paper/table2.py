@@ -155,6 +155,7 @@ def table2(
     seeds: int = 5,
     cases: int = 1_000,
     config: ConfigLike = "paper",
+    variant: str = "paper",
     babbles: int = 1_000,
     hold_trials: int = 100,
     progress_bar: bool = False,
@@ -166,6 +167,7 @@ def table2(
         seeds: Number of seeds: `seed`, `seed` + 1, ...
         cases: Random cases in each region, for each seed; half of each size on average.
         config: Body and task.
+        variant: Variant of the agent, "paper" or "chain".
         babbles: Babbles to learn from.
         hold_trials: Trials of the reflex for each diameter; 0 skips them.
         progress_bar: Show bars with the time left.
@@ -180,7 +182,7 @@ def table2(
     sizes = {d: _Collected() for d in table_diameters(config)}
     kept, made = 0, 0
     for one in range(seed, seed + seeds):
-        agent = HebbBabbling(gymnasium.make("BabbleGrasp-v0", config=config), seed=one)
+        agent = HebbBabbling(gymnasium.make("BabbleGrasp-v0", config=config), variant, seed=one)
         agent.learn(babbles, progress_bar=progress_bar)
         kept, made = kept + agent.learnt, made + agent.babbled
         experiences = agent.experiences()
@@ -202,6 +204,7 @@ def table2(
     hold = hold_rates(hold_trials, config, progress_bar=progress_bar) if hold_trials else []
     settings = {
         "config": str(config),
+        "variant": variant,
         "seed": seed,
         "seeds": seeds,
         "cases": cases,
@@ -264,4 +267,4 @@ def recalled_hands(agent: HebbBabbling, cases: Sequence[GraspScenario]) -> NDArr
     envs = for_cases(EnvArguments.of(agent.interface), cases, {}).batch(len(cases))
     senses, _ = envs.reset(seed=0, options={"scenario": list(cases)})
     envs.close()
-    return agent.decide(senses)[:, 2:]
+    return agent.decide(senses)[:, -2:]

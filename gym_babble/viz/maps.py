@@ -15,7 +15,11 @@ if TYPE_CHECKING:
 __all__ = ["AgentMaps", "MapPicture", "colour_map"]
 
 # Highest read-out of an output map; its lowest is 0.
-READ_OUT = {"movement": 1.0, "arm": 1.0, "hand": 90.0}
+READ_OUT = {"movement": 1.0, "arm": 1.0, "hand": 90.0, "pregrasp": 1.0, "contact": 1.0}
+# Neurons of an output map beyond each end of what it is read out as; the others have none.
+MARGIN = {"pregrasp": 2, "contact": 2}
+# The input maps of the chain have the names of its output maps; all are of the eye and the size.
+EYE_AND_SIZE = ("pregrasp", "contact", "hand")
 # The maps whose rows count from the top; the others' count from below.
 FROM_TOP = ("fovea",)
 
@@ -50,7 +54,9 @@ class AgentMaps:
     def __init__(self, agent: HebbBabbling) -> None:
         self._agent = agent
         weights = agent.weights
-        self._weights = [value for name, value in weights.items() if name.endswith("weights")]
+        found = [value for name, value in weights.items() if name.endswith("weights")]
+        # The chain's last two are of its routes, which are no map of what is seen.
+        self._weights = found[: len(EYE_AND_SIZE)] if agent.variant == "chain" else found
         w_max = agent.brain["rule"].get("w_max")
         # Oja's rule has no bound.
         self._bounds = [w_max or float(np.abs(value).max()) for value in self._weights]
@@ -67,7 +73,8 @@ class AgentMaps:
         most active, and activity of the output map (Eq. 4) with its read-out marked. The weights
         are those from the most active input neuron, as in Fig. 5 and the top of Fig. 8. Of the
         fovea, where many neurons are equally active, they are those to the most active output
-        neuron, as in the bottom of Fig. 8.
+        neuron, as in the bottom of Fig. 8. Of the chain's pairs of eye and size, the eye's map at
+        the most active size is shown.
 
         Args:
             observation: As the environment gives it.
@@ -101,12 +108,17 @@ def _association(
         weights, title = _picture(name, w[most_recalled].reshape(g.shape)), "weights in"
     else:
         weights, title = _picture(output, w[:, most_seen].reshape(a.shape)), "weights out"
-    b1, b2 = (read_out / READ_OUT[output]).tolist()
+    margin = MARGIN.get(output, 0) / (len(a) - 1)
+    b1, b2 = (margin + (1 - 2 * margin) * read_out / READ_OUT[output]).tolist()
     mark = (b1, 1.0 - b2) if a.any() else None
+    seen_title = "eye" if name in EYE_AND_SIZE else name.replace("_", ", ")
+    if g.ndim == 3:
+        strongest = most_seen // g[0].size
+        seen_title, g = f"eye, size {strongest + 1} of {len(g)}", g[strongest]
     seen = _picture(name, g)
     recalled = _picture(output, a)
     return (
-        MapPicture(name.replace("_", ", "), seen, 0.0, _most(seen), ACTIVITY),
+        MapPicture(seen_title, seen, 0.0, _most(seen), ACTIVITY),
         MapPicture(title, weights, -w_max, w_max, WEIGHTS),
         MapPicture(output, recalled, 0.0, _most(recalled), ACTIVITY, mark),
     )

@@ -12,6 +12,8 @@ from gym_babble.viz.maps import AgentMaps, colour_map
 from gym_babble.viz.text import INK, PALE, draw_on, font, shortened
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from gym_babble.viz.episode import Episode
@@ -74,25 +76,29 @@ class Panel:
 
     Args:
         title: What to call the agent.
-        detail: A line on what it is or where it acts.
+        detail: A line on what it is or where it acts; or one for each moment of the episode.
         episode: What it played.
         camera: Camera of the large picture.
     """
 
     def __init__(
-        self, title: str, detail: str, episode: Episode, camera: str = "third_person"
+        self,
+        title: str,
+        detail: str | Sequence[str],
+        episode: Episode,
+        camera: str = "third_person",
     ) -> None:
         self.title, self.detail, self.episode, self.camera = title, detail, episode, camera
         agent = episode.agent
         self.maps = AgentMaps(agent) if isinstance(agent, HebbBabbling) else None
-        self._header: NDArray[np.uint8] | None = None
+        self._header: tuple[str, NDArray[np.uint8]] | None = None
         self._rows: tuple[Any, NDArray[np.uint8]] | None = None
 
     def draw(self, moment: int, size: PanelSize) -> NDArray[np.uint8]:
         """The panel (height, width, 3) at a moment; after the end it stands still."""
         moment = min(moment, self.episode.moments - 1)
         panel = np.full((size.height, size.width, 3), 255, np.uint8)
-        panel[: size.header] = self._draw_header(size)
+        panel[: size.header] = self._draw_header(moment, size)
         panel[size.header : size.header + size.width] = self._draw_view(moment, size)
         if self.maps is not None:
             rows = self._draw_rows(self.maps, moment, size)
@@ -108,18 +114,20 @@ class Panel:
             self._rows = observation, np.vstack(drawn)
         return self._rows[1]
 
-    def _draw_header(self, size: PanelSize) -> NDArray[np.uint8]:
-        if self._header is None or self._header.shape[:2] != (size.header, size.width):
-            blank = np.full((size.header, size.width, 3), 255, np.uint8)
+    def _draw_header(self, moment: int, size: PanelSize) -> NDArray[np.uint8]:
+        detail = self.detail if isinstance(self.detail, str) else self.detail[moment]
+        shape = (size.header, size.width, 3)
+        if self._header is None or self._header[0] != detail or self._header[1].shape != shape:
+            blank = np.full(shape, 255, np.uint8)
             large, small = font(round(size.header * 0.42)), font(size.text)
             width = size.width - 2 * size.margin
             with draw_on(blank) as draw:
                 at = (size.margin, size.header // 16)
                 draw.text(at, shortened(self.title, large, width), INK, large)
                 at = (size.margin, size.header * 9 // 16)
-                draw.text(at, shortened(self.detail, small, width), PALE, small)
-            self._header = blank
-        return self._header
+                draw.text(at, shortened(detail, small, width), PALE, small)
+            self._header = detail, blank
+        return self._header[1]
 
     def _draw_view(self, moment: int, size: PanelSize) -> NDArray[np.uint8]:
         """The robot, the eye's view in a corner, and time or outcome."""

@@ -5,7 +5,16 @@ from typing import Annotated
 
 import typer
 
-from gym_babble.cli.arguments import AsJson, Babbles, ConfigName, FirstSeed, Picture, Seed, Seeds
+from gym_babble.cli.arguments import (
+    AsJson,
+    Babbles,
+    ConfigName,
+    FirstSeed,
+    Picture,
+    Seed,
+    Seeds,
+    Variant,
+)
 from gym_babble.cli.learning import learn_grasping
 from gym_babble.cli.output import (
     check_picture,
@@ -35,6 +44,7 @@ def table2(
         int, typer.Option(min=2, help="Random cases in each region, for each seed.")
     ] = 1_000,
     config: ConfigName = "paper",
+    variant: Variant = "paper",
     babbles: Babbles = 1_000,
     hold_trials: Annotated[
         int, typer.Option(min=0, help="Trials of holding for each diameter.")
@@ -51,6 +61,7 @@ def table2(
         seeds=seeds,
         cases=cases,
         config=config,
+        variant=variant,
         babbles=babbles,
         hold_trials=hold_trials,
         progress_bar=True,
@@ -68,10 +79,11 @@ def fig7(
     babbles: Babbles = 1_000,
     seed: Seed = 0,
     config: ConfigName = "paper",
+    variant: Variant = "paper",
 ) -> None:
     """Figure 7: final portions of the palm's trajectories."""
     check_picture(file)
-    agent = learn_grasping(babbles, seed, config)
+    agent = learn_grasping(babbles, seed, config, variant=variant)
     cases = scenarios("fig7", config=config)
     save(palm.draw(palm.trajectories(agent, cases, progress_bar=True)), file)
     name_files([file])

@@ -7,6 +7,7 @@ use babble_env::EnvError;
 use babble_env::batch::Record;
 use babble_env::case::CasePart;
 use babble_env::picture::View;
+use babble_env::task::MAX_MEASURES;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -34,16 +35,13 @@ pub(crate) struct Batch {
     senses: usize,
     /// Numbers in a goal; 0 without goals.
     goals: usize,
-    /// Names of the facts.
-    facts: Vec<Py<PyString>>,
-    /// Names of the reward terms.
-    terms: Vec<Py<PyString>>,
-    /// Names of the outcomes.
-    outcomes: Vec<Py<PyString>>,
+    facts: Vec<InfoKey>,
+    terms: Vec<InfoKey>,
+    outcomes: Vec<InfoKey>,
     /// The outcomes, in the same order.
     outcome_names: Vec<&'static str>,
     /// Names of the measures, and how many numbers each has.
-    measures: Vec<(Py<PyString>, usize)>,
+    measures: Vec<(InfoKey, usize)>,
 }
 
 #[pymethods]
@@ -64,10 +62,7 @@ impl Batch {
         let envs = py.detach(make).map_err(errors::env)?;
         let spec = task.task.spec();
         let senses = spec.senses.iter().map(|entry| entry.labels.len()).sum();
-        let names = |names: &[&str]| {
-            let name = |name: &&str| PyString::intern(py, name).unbind();
-            names.iter().map(name).collect()
-        };
+        let names = |names: &[&str]| names.iter().map(|name| InfoKey::new(py, name)).collect();
         Ok(Self {
             envs: Guarded::new("environment", envs),
             parts: task.task.case_parts(),
@@ -81,7 +76,7 @@ impl Batch {
             measures: spec
                 .measures
                 .iter()
-                .map(|one| (PyString::intern(py, one.name).unbind(), one.labels.len()))
+                .map(|one| (InfoKey::new(py, one.name), one.labels.len()))
                 .collect(),
         })
     }
@@ -172,16 +167,28 @@ impl Batch {
     }
 
     /// What all environments showed last, in new arrays of length n: senses, achieved goals and desired
-    /// goals where the task has them, rewards, terminated, truncated, outcome codes, facts, reward terms,
-    /// measures where the task has them.
-    fn all<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    /// goals where the task has them, rewards, terminated, truncated, and infos in the layout of
+    /// Gymnasium's `VectorEnv`, each key beside its mask. With `mask`, infos are only of the environments
+    /// for which it is true.
+    #[pyo3(signature = (mask=None))]
+    fn all<'py>(&self, py: Python<'py>, mask: Option<Vec<bool>>) -> PyResult<Bound<'py, PyDict>> {
         let envs = &*self.envs.read()?;
         let records: Vec<&Record> = (0..envs.envs()).filter_map(|i| envs.record(i)).collect();
-        self.arrays(py, &records)
+        let mask = mask.unwrap_or_else(|| vec![true; records.len()]);
+        let shown = self.arrays(py, &records)?;
+        let each = || records.iter().map(|r| r.step);
+        shown.set_item(intern!(py, "reward"), array(py, each().map(|s| s.reward)))?;
+        let terminated = array(py, each().map(|s| s.terminated));
+        shown.set_item(intern!(py, "terminated"), terminated)?;
+        let truncated = array(py, each().map(|s| s.truncated));
+        shown.set_item(intern!(py, "truncated"), truncated)?;
+        shown.set_item(intern!(py, "infos"), self.infos(py, &records, &mask)?)?;
+        Ok(shown)
     }
 
-    /// The same for the ended episodes of environments that began anew by themselves within the last
-    /// step, and the indices of these; None if there are none.
+    /// Senses, goals, outcome codes, facts, reward terms and measures of the ended episodes of
+    /// environments that began anew by themselves within the last step, and the indices of these; None if
+    /// there are none.
     fn ended<'py>(&self, py: Python<'py>) -> PyResult<Option<Ended<'py>>> {
         let envs = &*self.envs.read()?;
         let ended: Vec<(usize, &Record)> = (0..envs.envs())
@@ -191,10 +198,22 @@ impl Batch {
             return Ok(None);
         }
         let (indices, records): (Vec<usize>, Vec<&Record>) = ended.into_iter().unzip();
-        Ok(Some((
-            PyArray1::from_vec(py, indices),
-            self.arrays(py, &records)?,
-        )))
+        let shown = self.arrays(py, &records)?;
+        let each = || records.iter();
+        let outcome = array(py, each().map(|r| r.info.outcome as usize));
+        shown.set_item("outcome", outcome)?;
+        let n = self.facts.len();
+        let facts = table(py, n, each().map(|r| &r.info.facts[..n]))?;
+        shown.set_item("facts", facts)?;
+        let n = self.terms.len();
+        let terms = table(py, n, each().map(|r| &r.step.terms[..n]))?;
+        shown.set_item("terms", terms)?;
+        let n = self.measures.iter().map(|(_, n)| n).sum();
+        if n > 0 {
+            let measures = table(py, n, each().map(|r| &r.info.measures[..n]))?;
+            shown.set_item("measures", measures)?;
+        }
+        Ok(Some((PyArray1::from_vec(py, indices), shown)))
     }
 
     /// Bytes from which environment `i` continues bit for bit.
@@ -296,9 +315,9 @@ impl Batch {
         let terms = named(py, &self.terms, &step.terms)?;
         shown.set_item(intern!(py, "reward_terms"), terms)?;
         let mut from = 0;
-        for (name, n) in &self.measures {
+        for (key, n) in &self.measures {
             let numbers = PyArray1::from_slice(py, &info.measures[from..from + n]);
-            shown.set_item(name, numbers)?;
+            shown.set_item(&key.name, numbers)?;
             from += n;
         }
         (
@@ -311,49 +330,115 @@ impl Batch {
             .into_pyobject(py)
     }
 
+    /// Senses and goals.
     fn arrays<'py>(&self, py: Python<'py>, records: &[&Record]) -> PyResult<Bound<'py, PyDict>> {
         let each = || records.iter();
         let dict = PyDict::new(py);
         let senses = table(py, self.senses, each().map(|r| &r.senses[..]))?;
-        dict.set_item("senses", senses)?;
+        dict.set_item(intern!(py, "senses"), senses)?;
         if self.goals > 0 {
             let achieved = table(py, self.goals, each().map(|r| &r.achieved[..]))?;
-            dict.set_item("achieved_goal", achieved)?;
+            dict.set_item(intern!(py, "achieved_goal"), achieved)?;
             let desired = table(py, self.goals, each().map(|r| &r.desired[..]))?;
-            dict.set_item("desired_goal", desired)?;
-        }
-        let reward = PyArray1::from_iter(py, each().map(|r| r.step.reward));
-        dict.set_item("reward", reward)?;
-        let terminated = PyArray1::from_iter(py, each().map(|r| r.step.terminated));
-        dict.set_item("terminated", terminated)?;
-        let truncated = PyArray1::from_iter(py, each().map(|r| r.step.truncated));
-        dict.set_item("truncated", truncated)?;
-        let outcome = PyArray1::from_iter(py, each().map(|r| r.info.outcome as usize));
-        dict.set_item("outcome", outcome)?;
-        let n = self.facts.len();
-        let facts = table(py, n, each().map(|r| &r.info.facts[..n]))?;
-        dict.set_item("facts", facts)?;
-        let n = self.terms.len();
-        let terms = table(py, n, each().map(|r| &r.step.terms[..n]))?;
-        dict.set_item("terms", terms)?;
-        let n = self.measures.iter().map(|(_, n)| n).sum();
-        if n > 0 {
-            let measures = table(py, n, each().map(|r| &r.info.measures[..n]))?;
-            dict.set_item("measures", measures)?;
+            dict.set_item(intern!(py, "desired_goal"), desired)?;
         }
         Ok(dict)
     }
+
+    /// Facts, outcomes, reward terms and measures of the environments in `mask`; false and 0 for the
+    /// others.
+    fn infos<'py>(
+        &self,
+        py: Python<'py>,
+        records: &[&Record],
+        mask: &[bool],
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let masked = || records.iter().zip(mask);
+        let add = |dict: &Bound<'py, PyDict>, key: &InfoKey, values: Bound<'py, PyAny>| {
+            dict.set_item(&key.name, values)?;
+            dict.set_item(&key.mask, PyArray1::from_slice(py, mask))
+        };
+        let infos = PyDict::new(py);
+        for (k, key) in self.facts.iter().enumerate() {
+            let facts = array(py, masked().map(|(r, &shown)| shown && r.info.facts[k]));
+            add(&infos, key, facts.into_any())?;
+        }
+        let outcomes = PyDict::new(py);
+        for (key, &name) in self.outcomes.iter().zip(&self.outcome_names) {
+            let is = masked().map(|(r, &shown)| shown && r.info.outcome.name() == name);
+            add(&outcomes, key, array(py, is).into_any())?;
+        }
+        let terms = PyDict::new(py);
+        for (k, key) in self.terms.iter().enumerate() {
+            let term = masked().map(|(r, &shown)| if shown { r.step.terms[k] } else { 0.0 });
+            add(&terms, key, array(py, term).into_any())?;
+        }
+        for (name, of_name, part) in [
+            (intern!(py, "outcome"), intern!(py, "_outcome"), outcomes),
+            (
+                intern!(py, "reward_terms"),
+                intern!(py, "_reward_terms"),
+                terms,
+            ),
+        ] {
+            infos.set_item(name, part)?;
+            infos.set_item(of_name, PyArray1::from_slice(py, mask))?;
+        }
+        let mut from = 0;
+        for (key, n) in &self.measures {
+            let numbers = masked().map(|(r, &shown)| {
+                let measures = if shown {
+                    &r.info.measures
+                } else {
+                    &NO_MEASURES
+                };
+                &measures[from..from + n]
+            });
+            add(&infos, key, table(py, *n, numbers)?.into_any())?;
+            from += n;
+        }
+        Ok(infos)
+    }
+}
+
+/// What is shown of an environment that is not in the mask.
+const NO_MEASURES: [f64; MAX_MEASURES] = [0.0; MAX_MEASURES];
+
+/// A key of the infos.
+#[derive(Debug)]
+struct InfoKey {
+    name: Py<PyString>,
+    /// The key, after an underscore, of the mask of environments that have a value.
+    mask: Py<PyString>,
+}
+
+impl InfoKey {
+    fn new(py: Python<'_>, name: &str) -> Self {
+        Self {
+            name: PyString::intern(py, name).unbind(),
+            mask: PyString::intern(py, &format!("_{name}")).unbind(),
+        }
+    }
+}
+
+/// A new array of some values.
+fn array<T: numpy::Element>(
+    py: Python<'_>,
+    values: impl Iterator<Item = T>,
+) -> Bound<'_, PyArray1<T>> {
+    // A copy is quicker than an array that owns memory of Rust, if it is short.
+    PyArray1::from_slice(py, &values.collect::<Vec<T>>())
 }
 
 /// Values by name.
 fn named<'py, T: IntoPyObject<'py> + Copy>(
     py: Python<'py>,
-    names: &[Py<PyString>],
+    names: &[InfoKey],
     values: &[T],
 ) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
-    for (name, &value) in names.iter().zip(values) {
-        dict.set_item(name, value)?;
+    for (key, &value) in names.iter().zip(values) {
+        dict.set_item(&key.name, value)?;
     }
     Ok(dict)
 }

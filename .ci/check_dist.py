@@ -38,7 +38,7 @@ def check_wheel(path: Path) -> None:
         check_description(path, wheel.read(metadata))
     strays = [name for name in names if not name.startswith(("gym_babble/", "gym_babble-"))]
     kinds = ("*.py", "*.pyi", "*.css", "*.html", "*.js", "*.json", "*.toml", "*.yml", "py.typed")
-    kinds += ("*.safetensors", "*.zip")
+    kinds += ("*.safetensors.xz", "*.zip")
     sources = {str(source) for kind in kinds for source in Path("gym_babble").rglob(kind)}
     missing = sources - set(names)
     if strays or missing or "-abi3-" not in path.name:

@@ -330,6 +330,30 @@ def basin(stores: Stores) -> str:
     )
 
 
+def chain(stores: Stores) -> str:
+    """How often the chain holds objects of each size: mean and worst of the seeds."""
+    found: dict[tuple[Any, ...], dict[float, list[dict[str, Any]]]] = {}
+    for run in stores["chain"].values():
+        for row in run:
+            learnt = (row["config"], row["region"], row["learnt"], row["practised"])
+            found.setdefault(learnt, {}).setdefault(row["diameter_cm"], []).append(row)
+    sizes = sorted({size for of in found.values() for size in of})
+    rows = []
+    for (config, region, learnt, practised), of_size in found.items():
+        cells = [f"`{config}`", f"`{region}`", f"{learnt:,}", f"{practised:,}"]
+        some = next(iter(of_size.values()))
+        steps, seconds = (
+            fmean(row[name] for row in some) for name in ("control_steps", "processor_seconds")
+        )
+        cells += [f"{steps:,.0f}", f"{seconds:.0f} s"]
+        for size in sizes:
+            held = [row["kept"] for row in of_size.get(size, ())]
+            cells.append(f"{share(fmean(held))} ({share(min(held))})" if held else "")
+        rows.append(cells)
+    heads = ["body", "region", "babbles kept", "trials", "control steps", "CPU"]
+    return markdown([*heads, *(f"{size:g} cm" for size in sizes)], rows)
+
+
 def movements(stores: Stores) -> str:
     """How the chain's movements change while it learns."""
     rows = []
@@ -399,6 +423,7 @@ BLOCKS: dict[str, Callable[[Stores], str]] = {
             interference,
             periods,
             basin,
+            chain,
             movements,
             solved,
             tuning,

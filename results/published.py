@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import lzma
 import subprocess
 import sys
 from dataclasses import replace
@@ -36,7 +37,7 @@ DRAWN = {
         *("hebb-paper", "hebb-conjunctive", "goal-babbling"),
         *("ppo", "ppo-pattern", "ppo-obstacle", "sac"),
     ),
-    "grasp": ("hebb-paper", "goal-babbling", "ppo", "ppo-reflex", "ppo-in-hand"),
+    "grasp": ("hebb-paper", "hebb-chain", "goal-babbling", "ppo", "ppo-reflex", "ppo-in-hand"),
 }
 """The learning curves in the picture, by task."""
 
@@ -87,12 +88,13 @@ def copy_agents() -> None:
     for name in NAMES:
         run = runs[f"{name}.0"]
         if run.agent is not None:
-            write_file(TRAINED / f"{name}{run.agent.suffix}", _small(run))
+            end = ".zip" if run.agent.suffix == ".zip" else f"{run.agent.suffix}.xz"
+            write_file(TRAINED / f"{name}{end}", _small(run))
 
 
 def _small(run: StoredRun) -> bytes:
-    """The file of a run's agent; of a model only what acts."""
+    """The file of a run's agent, packed; of a model only what acts."""
     assert run.agent is not None
     if run.agent.suffix != ".zip":
-        return run.agent.read_bytes()
+        return lzma.compress(run.agent.read_bytes(), preset=9 | lzma.PRESET_EXTREME)
     return without_learning(run.agent)

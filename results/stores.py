@@ -77,6 +77,10 @@ STORES: dict[str, dict[str, str]] = {
     "periods": {"rows": "python examples/grasp_learning_period.py"},
     "convergence": {"counts": "python examples/convergence.py"},
     "sides": {"scripted": "python examples/grasp_sides.py"},
+    "chain": {
+        "paper": "python examples/grasp_chain.py",
+        "icub": "python examples/grasp_chain.py --config icub --babbles 1000 --trials 0 --more 2",
+    },
     "basin": {"elbow": "python examples/grasp_basin.py"},
     "movements": {"rows": "python examples/grasp_movements.py"},
     "interference": {"rows": "python examples/grasp_interference.py --seeds 2"},

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from results.stores import Stores
 
 LEVELS = (0.5, 0.67, 0.8, 0.9, 0.95)
+ABLATION_LEVELS = (0.5, 0.8, 0.95)
 PAIRS = {
     "reach": (
         ("ppo-obstacle", "hebb-paper", "both see the obstacle"),
@@ -28,9 +29,36 @@ PAIRS = {
         ("ppo-reflex", "hebb-paper", "PPO sees everything, and has the reflex"),
         ("ppo-in-hand", "hebb-paper", "PPO sees everything, and has objects in the hand"),
         ("ppo", "goal-babbling", "PPO sees everything"),
+        ("ppo", "hebb-chain", "PPO sees everything"),
+        ("ppo-reflex", "hebb-chain", "PPO sees everything, and has the reflex"),
+        ("ppo-in-hand", "hebb-chain", "PPO sees everything, and has objects in the hand"),
     ),
 }
 """Who is compared with whom in steps, and what differs."""
+
+ABLATIONS = {
+    "hebb-chain": "the chain",
+    "chain-eye-alone": "the eye alone as input, without the size",
+    "chain-eq7": "Eq. 7 instead of the outstar",
+    "chain-no-jitter": "the arm returns exactly",
+    "chain-free-withdrawal": "withdrawal in a random direction",
+    "chain-no-opening": "the hand stays closed on its withdrawal",
+    "chain-no-reflex": "touch does not stop the arm",
+    "chain-no-advance": "no advance beyond the recalled contact",
+    "chain-no-squeeze": "the hand closes as recalled, not further",
+    "chain-shuffled": "each sight paired with another babble's action",
+    "chain-random-reach": "random reaches, with advance and reflex",
+    "reflex-only": "random babbles, with the reflex",
+    "hebb-paper": "the paper's agent",
+    "nearest-neighbour": "nearest neighbours of the paper's babbles",
+    "goal-babbling": "goal babbling",
+    "ppo": "PPO",
+    "ppo-reflex": "PPO with the reflex",
+    "ppo-in-hand": "PPO that starts with objects in the hand",
+    "scripted": "a script that knows the geometry",
+}
+"""The chain, the chain without a part, and others; the middle ones are in this table alone."""
+VARIED = [label for label in ABLATIONS if label.startswith("chain-")]
 
 
 def task_of(stores: Stores, name: str) -> dict[str, Any]:
@@ -73,6 +101,7 @@ def study_reach(stores: Stores) -> str:
 
 def study_grasp(stores: Stores) -> str:
     """All agents in grasping."""
+    agents = task_of(stores, "grasp")["agents"]
     rows = [
         [
             f"`{agent['label']}`",
@@ -82,7 +111,8 @@ def study_grasp(stores: Stores) -> str:
             share(agent["rates"]["reach"]),
             *_learnt(agent),
         ]
-        for agent in task_of(stores, "grasp")["agents"]
+        for agent in agents
+        if agent["label"] not in VARIED
     ]
     heads = ["agent", "knows beforehand", "success", "95 %", "seeds", *SIZES.values()]
     return markdown([*heads, "touched", "babbles or episodes", "control steps", "CPU"], rows)
@@ -98,7 +128,7 @@ def _budget(found: dict[str, Any]) -> str:
 def _budgets(stores: Stores, name: str) -> str:
     rows = []
     for agent in task_of(stores, name)["agents"]:
-        if agent["curve"]:
+        if agent["curve"] and agent["label"] not in VARIED:
             found = {one["level"]: one for one in agent["budgets"]["control_steps"]}
             rows.append([f"`{agent['label']}`", *(_budget(found[level]) for level in LEVELS)])
     return markdown(["control steps to", *(share(level) for level in LEVELS)], rows)
@@ -131,7 +161,7 @@ def study_short(stores: Stores) -> str:
     """The README's rows: success and what it took, for the agents that say most."""
     shown = {
         "reach": ("hebb-paper", "hebb-conjunctive", "ppo-obstacle", "ppo-pattern", "ppo", "sac"),
-        "grasp": ("hebb-paper", "goal-babbling", "ppo", "ppo-reflex"),
+        "grasp": ("hebb-paper", "hebb-chain", "goal-babbling", "ppo", "ppo-reflex"),
     }
     rows = []
     for name, labels in shown.items():
@@ -143,8 +173,34 @@ def study_short(stores: Stores) -> str:
     return markdown(heads, rows)
 
 
+def ablations(stores: Stores) -> str:
+    """The chain without each of its parts, and others, in grasping."""
+    agents = {agent["label"]: agent for agent in task_of(stores, "grasp")["agents"]}
+    rows = []
+    for label, title in ABLATIONS.items():
+        agent = agents[label]
+        cells = [title, *_success(agent)]
+        cells += [share(agent["sizes"][size]["mean"]) for size in SIZES.values()]
+        for axis, form in (("control_steps", count), ("cpu_seconds", seconds)):
+            cells += _levels(agent, axis, form)
+        rows.append(cells)
+    steps = [f"steps to {share(level)}" for level in ABLATION_LEVELS]
+    cpu = [f"CPU to {share(level)}" for level in ABLATION_LEVELS]
+    return markdown(["", "success", "95 %", "seeds", *SIZES.values(), *steps, *cpu], rows)
+
+
+def _levels(agent: dict[str, Any], axis: str, form: Callable[[float], str]) -> list[str]:
+    if not agent["curve"]:
+        return ["–"] * len(ABLATION_LEVELS)
+    found = {one["level"]: one for one in agent["budgets"][axis]}
+    return [
+        "never" if found[level]["by"] is None else form(found[level]["by"])
+        for level in ABLATION_LEVELS
+    ]
+
+
 STUDY_BLOCKS: tuple[Callable[[Stores], str], ...] = (
     *(study_short, study_reach, study_grasp, study_budgets_reach, study_budgets_grasp),
-    study_ratios,
+    *(study_ratios, ablations),
 )
 """The study's tables."""

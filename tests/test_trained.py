@@ -39,13 +39,11 @@ def test_it_is_loaded_by_name_and_small(name):
     observation, _ = env.reset(seed=0)
     action, _ = agent.predict(observation, deterministic=True)
     assert np.shape(action) == env.action_space.shape
-    assert trained.trained_file(name).stat().st_size < 6_000_000
+    assert trained.trained_file(name).stat().st_size < 2**21
 
 
 def test_the_folder_has_these_files_alone():
-    files = {
-        path.name for path in trained.FOLDER.iterdir() if path.suffix in (".safetensors", ".zip")
-    }
+    files = {path.name for path in trained.FOLDER.iterdir() if path.suffix in (".xz", ".zip")}
     assert files == {trained.trained_file(name).name for name in trained.TRAINED}
 
 
@@ -64,3 +62,22 @@ def test_a_missing_file_is_named(monkeypatch, tmp_path):
 def test_an_unknown_name_lists_the_trained_ones():
     with pytest.raises(FileNotFoundError, match=r"reach\.pp0: no such file.+reach\.ppo"):
         named_agent("reach.pp0")
+
+
+def test_a_packed_file_that_is_damaged_is_refused(tmp_path, monkeypatch):
+    packed = trained.trained_file("reach.hebb-paper").read_bytes()
+    path = tmp_path / "agent.safetensors.xz"
+    path.write_bytes(packed)
+    whole = gym_babble.HebbBabbling.load(path)
+    assert whole.to_bytes() == gym_babble.load_agent("reach.hebb-paper").to_bytes()
+    for data, problem in (
+        (packed[:-100], "cut short"),
+        (packed[:500] + bytes(500) + packed[1000:], "orrupt"),
+    ):
+        path.write_bytes(data)
+        with pytest.raises(AgentFileError, match=problem):
+            gym_babble.load_agent(path)
+    path.write_bytes(packed)
+    monkeypatch.setattr("gym_babble.files.read.MOST_BYTES", 1_000)
+    with pytest.raises(AgentFileError, match="more than 1,000 bytes"):
+        gym_babble.load_agent(path)

@@ -12,11 +12,11 @@ from typing_extensions import Self
 from gym_babble import _core
 from gym_babble.agents.base import Planner, interface_of
 from gym_babble.agents.practising import LEARNS_IN
-from gym_babble.checks import check_path, check_seed, check_whole, shown
+from gym_babble.checks import check_seed, check_whole, shown
 from gym_babble.envs.interface import Interface
 from gym_babble.envs.registry import task_entry
 from gym_babble.errors import AgentFileError, ConfigError
-from gym_babble.files import write_file
+from gym_babble.files import read_agent, write_file
 from gym_babble.progress import track
 
 if TYPE_CHECKING:
@@ -228,7 +228,7 @@ class Learning(Planner):
             AgentFileError: The file is cut short, altered, or not such an agent.
             ConfigError: It cannot act in the environment.
         """
-        data = check_path("path", path).read_bytes()
+        data = read_agent(path)
         names = [name.lstrip("_") for name in cls.ARRAYS]
         try:
             text, arrays = _core.read_tensors(key_of(cls.KIND), data, names)

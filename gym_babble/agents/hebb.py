@@ -16,7 +16,6 @@ from gym_babble.brain import is_own, rule_numbers, teach
 from gym_babble.checks import (
     check_choice,
     check_flag,
-    check_path,
     check_seed,
     check_threads,
     check_whole,
@@ -27,7 +26,7 @@ from gym_babble.checks import (
 from gym_babble.envs.interface import Interface
 from gym_babble.envs.registry import task_entry
 from gym_babble.errors import AgentFileError, ConfigError
-from gym_babble.files import write_file
+from gym_babble.files import read_agent, write_file
 from gym_babble.progress import track
 
 if TYPE_CHECKING:
@@ -333,7 +332,7 @@ class HebbBabbling(Planner):
             AgentFileError: The file is cut short, altered, or not an agent.
             ConfigError: It cannot act in the environment, or learnt by a rule of the core.
         """
-        data = check_path("path", path).read_bytes()
+        data = read_agent(path)
         try:
             core = _core.Learner.load(data, check_threads(threads))
         except ValueError as error:

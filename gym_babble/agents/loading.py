@@ -21,9 +21,9 @@ from gym_babble.agents.neighbours import NearestNeighbours
 from gym_babble.agents.reference import Oracle, Random, ReflexOnly, Scripted
 from gym_babble.agents.reward_hebb import RewardHebb
 from gym_babble.agents.trained import TRAINED, trained_file
-from gym_babble.checks import check_path
 from gym_babble.envs.registry import environment
 from gym_babble.errors import AgentFileError, ConfigError
+from gym_babble.files import read_agent
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -78,7 +78,7 @@ def load_agent(path: str | Path, env: EnvLike | None = None) -> HebbBabbling | L
         path = trained_file(path)
         if path.suffix == ".zip":
             return _model(path, env)
-    data = check_path("path", path).read_bytes()
+    data = read_agent(path)
     try:
         keys = _core.tensor_keys(data)
     except ValueError as error:

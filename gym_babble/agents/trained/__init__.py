@@ -29,7 +29,7 @@ def trained_file(name: str) -> Path:
         AgentFileError: The installation does not have it.
     """
     found = [
-        path for end in (".safetensors", ".zip") if (path := FOLDER / f"{name}{end}").is_file()
+        path for end in (".safetensors.xz", ".zip") if (path := FOLDER / f"{name}{end}").is_file()
     ]
     if not found:
         raise AgentFileError(f"{name}: its file is not in {FOLDER}: install the package anew")

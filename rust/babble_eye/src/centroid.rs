@@ -54,8 +54,8 @@ pub fn red_centroid(scene: &[Primitive], camera: &Pinhole) -> Option<[f64; 2]> {
         .map(|surface| surface.window)
         .reduce(|all, window| all.hull(&window))?;
     let red = decomposer.surfaces.len();
-    let farthest = farthest(&decomposer.surfaces);
-    decomposer.set_view(window);
+    let farthest = farthest(&decomposer.surfaces, &decomposer.plane);
+    decomposer.set_view(window, farthest);
     for (index, primitive) in scene.iter().enumerate() {
         if !primitive.material.target {
             decomposer.add(index, &primitive.shape);
@@ -85,14 +85,12 @@ fn targets(scene: &[Primitive]) -> impl Iterator<Item = (usize, &Primitive)> {
         .filter(|(_, primitive)| primitive.material.target)
 }
 
-/// A bound below the inverse depths of the surfaces.
-fn farthest(surfaces: &[VisibleSurface]) -> f64 {
+/// A bound below the inverse depths of what is seen of the surfaces, by far more than rounding.
+fn farthest(surfaces: &[VisibleSurface], plane: &ImagePlane) -> f64 {
+    const MARGIN: f64 = 1e-3;
     surfaces
         .iter()
-        .map(|surface| match &surface.kind {
-            SurfaceKind::Ball(ball, _) => 1.0 / (ball.centre.z + ball.radius),
-            _ => 0.0,
-        })
+        .map(|surface| (1.0 - MARGIN) * surface.farthest(plane))
         .fold(f64::INFINITY, f64::min)
 }
 

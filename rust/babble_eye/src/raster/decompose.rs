@@ -29,15 +29,16 @@ impl<'a> Decomposer<'a> {
             camera,
             plane,
             view,
-            frustum: Frustum::new(&plane, &view),
+            frustum: Frustum::new(&plane, &view, 0.0),
             surfaces: Vec::new(),
         }
     }
 
-    /// From now on, leaves out surfaces outside of this window.
-    pub(crate) fn set_view(&mut self, view: Window) {
+    /// From now on, leaves out surfaces outside of this window, and shapes of which all has a smaller
+    /// inverse depth than `farthest` \[1/m\].
+    pub(crate) fn set_view(&mut self, view: Window, farthest: f64) {
         self.view = view;
-        self.frustum = Frustum::new(&self.plane, &view);
+        self.frustum = Frustum::new(&self.plane, &view, farthest);
     }
 
     /// Adds the surfaces of one primitive.
@@ -45,7 +46,7 @@ impl<'a> Decomposer<'a> {
         match shape {
             Shape::Sphere { centre, radius } => {
                 let centre = self.camera.camera_from_world(centre);
-                self.ball(primitive, centre, *radius, None);
+                self.ball(primitive, centre, *radius);
             }
             Shape::Capsule { a, b, radius } => {
                 let (a, b) = self.ends(a, b);
@@ -102,19 +103,21 @@ impl<'a> Decomposer<'a> {
         !window.overlap(&self.view).is_empty()
     }
 
+    fn ball(&mut self, primitive: usize, centre: Vector3<f64>, radius: f64) {
+        let window = ball_window(&self.plane, &centre, radius);
+        self.ball_part(primitive, window, centre, radius, None);
+    }
+
     /// A ball, or with `outward` the half of one on the side of that vector.
-    fn ball(
+    fn ball_part(
         &mut self,
         primitive: usize,
+        window: Window,
         centre: Vector3<f64>,
         radius: f64,
         outward: Option<Vector3<f64>>,
     ) {
-        if self.frustum.misses(&[centre], radius) {
-            return;
-        }
-        let window = ball_window(&self.plane, &centre, radius);
-        if !self.sees(&window) {
+        if self.frustum.misses(&[centre], radius) || !self.sees(&window) {
             return;
         }
         if let Some(quadric) = Quadric::new(centre, Matrix3::identity(), radius) {
@@ -143,12 +146,18 @@ impl<'a> Decomposer<'a> {
         if self.frustum.misses(&[a, b], radius) {
             return;
         }
-        let window = self.capsule_window(&a, &b, radius);
+        let ends = [a, b].map(|end| ball_window(&self.plane, &end, radius));
+        // The hull of the ends, but where the camera's plane cuts between them.
+        let window = if a.z.min(b.z) > radius || a.z.max(b.z) <= -radius {
+            ends[0].hull(&ends[1])
+        } else {
+            Window::frame(&self.plane)
+        };
         if distance_to_segment(&a, &b) > radius && self.sees(&window) {
             self.side(primitive, window, [a, b], radius);
             let outward = (b - a).try_normalize(0.0);
-            self.ball(primitive, a, radius, outward.map(|axis| -axis));
-            self.ball(primitive, b, radius, outward);
+            self.ball_part(primitive, ends[0], a, radius, outward.map(|axis| -axis));
+            self.ball_part(primitive, ends[1], b, radius, outward);
         }
     }
 
@@ -219,14 +228,6 @@ impl<'a> Decomposer<'a> {
         let corners = [a + b, a - b, b - a, -a - b].map(|offset| centre + offset);
         corners_window(&self.plane, &corners)
     }
-
-    fn capsule_window(&self, a: &Vector3<f64>, b: &Vector3<f64>, radius: f64) -> Window {
-        if a.z.min(b.z) > radius || a.z.max(b.z) <= -radius {
-            ball_window(&self.plane, a, radius).hull(&ball_window(&self.plane, b, radius))
-        } else {
-            Window::frame(&self.plane)
-        }
-    }
 }
 
 /// The surfaces of a scene that may be seen in a window; without one, in the whole image.
@@ -237,7 +238,7 @@ pub(crate) fn decompose<'a>(
 ) -> Decomposer<'a> {
     let mut decomposer = Decomposer::new(camera);
     if let Some(view) = view {
-        decomposer.set_view(view);
+        decomposer.set_view(view, 0.0);
     }
     decomposer.surfaces.reserve(3 * scene.len());
     for (index, primitive) in scene.iter().enumerate() {

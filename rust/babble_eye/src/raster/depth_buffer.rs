@@ -11,9 +11,9 @@ use crate::scene::Primitive;
 /// No surface at a pixel.
 pub(crate) const NOTHING: u32 = u32::MAX;
 
-/// Pixels drawn at a time. The last ones of a run may be beyond its end and
-/// are left as they are.
-const LANES: usize = 4;
+/// Pixels drawn or shaded at a time, as one vector. The last ones of a run that is drawn may be beyond
+/// its end and are left as they are.
+pub(crate) const LANES: usize = 4;
 
 /// What is seen at each pixel of a window, as surfaces and inverse depths.
 pub(crate) struct DepthBuffer {

@@ -189,10 +189,18 @@ impl SurfaceKind {
     }
 
     /// A linear form above its inverse depth.
-    pub(crate) fn nearest(&self) -> Vector3<f64> {
+    pub(crate) fn above(&self) -> Vector3<f64> {
         match self {
             Self::Rectangle(flat) | Self::Ellipse(flat) => flat.w,
             Self::Ball(quadric, _) | Self::Side(quadric, _) => quadric.bounds()[1],
+        }
+    }
+
+    /// A linear form below its inverse depth.
+    pub(crate) fn below(&self) -> Vector3<f64> {
+        match self {
+            Self::Rectangle(flat) | Self::Ellipse(flat) => flat.w,
+            Self::Ball(quadric, _) | Self::Side(quadric, _) => quadric.bounds()[0],
         }
     }
 }

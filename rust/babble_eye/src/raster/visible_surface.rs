@@ -56,12 +56,24 @@ impl VisibleSurface {
 
     /// The largest inverse depth it can have in a window.
     pub(crate) fn nearest_in(&self, window: &Window, plane: &ImagePlane) -> f64 {
-        let above = self.kind.nearest();
-        let (left, right) = (window.columns.0, window.columns.1.max(1) - 1);
-        let (top, bottom) = (window.rows.0, window.rows.1.max(1) - 1);
-        [(left, top), (left, bottom), (right, top), (right, bottom)]
-            .map(|(i, j)| above.dot(&Vector3::new(plane.x(i), plane.y(j), 1.0)))
+        at_corners(&self.kind.above(), window, plane)
             .into_iter()
             .fold(0.0, f64::max)
     }
+
+    /// The smallest inverse depth at which it can be seen, at least 0.
+    pub(crate) fn farthest(&self, plane: &ImagePlane) -> f64 {
+        at_corners(&self.kind.below(), &self.window, plane)
+            .into_iter()
+            .fold(f64::INFINITY, f64::min)
+            .max(0.0)
+    }
+}
+
+/// Values of a linear form of d at the corners of a window; the others are between them.
+fn at_corners(form: &Vector3<f64>, window: &Window, plane: &ImagePlane) -> [f64; 4] {
+    let (left, right) = (window.columns.0, window.columns.1.max(1) - 1);
+    let (top, bottom) = (window.rows.0, window.rows.1.max(1) - 1);
+    [(left, top), (left, bottom), (right, top), (right, bottom)]
+        .map(|(i, j)| form.dot(&Vector3::new(plane.x(i), plane.y(j), 1.0)))
 }

@@ -51,15 +51,19 @@ pub(crate) fn meet(a: (usize, usize), b: (usize, usize)) -> (usize, usize) {
     (a.0.max(b.0), a.1.min(b.1))
 }
 
-/// The four planes from the camera along the edges of a window.
+/// What a window can show: the space between four planes from the camera along its edges, before a
+/// plane across the line of sight.
 #[derive(Debug, Clone)]
 pub(crate) struct Frustum {
-    /// Unit normals, away from the window.
+    /// Unit normals of the planes through the camera, away from the window.
     outward: [Vector3<f64>; 4],
+    /// Depth of the plane across, infinite without one \[m\].
+    far: f64,
 }
 
 impl Frustum {
-    pub(crate) fn new(plane: &ImagePlane, window: &Window) -> Self {
+    /// With the inverse depth of the plane across \[1/m\].
+    pub(crate) fn new(plane: &ImagePlane, window: &Window, farthest: f64) -> Self {
         // Half a pixel beyond the centres of the outermost pixels.
         let pitch = 1.0 / plane.focal_px;
         let [left, right] =
@@ -72,14 +76,14 @@ impl Frustum {
                 Vector3::new(0.0, 1.0, -top).normalize(),
                 Vector3::new(0.0, -1.0, bottom).normalize(),
             ],
+            far: 1.0 / farthest,
         }
     }
 
     /// Whether all within `radius` of the hull of points is beyond one plane.
-    pub(crate) fn misses(&self, points: &[Vector3<f64>], radius: f64) -> bool {
-        self.outward
-            .iter()
-            .any(|normal| points.iter().all(|point| normal.dot(point) > radius))
+    pub(crate) fn misses<const N: usize>(&self, points: &[Vector3<f64>; N], radius: f64) -> bool {
+        let outside = |normal: &Vector3<f64>| points.iter().all(|p| normal.dot(p) > radius);
+        points.iter().all(|point| point.z > self.far + radius) || self.outward.iter().any(outside)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::checker::Checker;
 use super::light::{Light, SHADOW, pigment};
-use super::pixel_format::PixelFormat;
+use super::pixel_format::{LANES, PixelFormat};
 use super::shading::SmoothShading;
 use super::shadow::{Shadow, cast};
 use super::swatch::{Swatch, swatch};
@@ -92,28 +92,31 @@ impl Painter {
                 shadow.draw(&mut self.buffer, shade.lit, shade.dark, &self.plane);
             }
         }
-        for (j, row) in (first..).zip(rows.chunks_exact_mut(length)) {
-            self.paint_row(j, row);
+        for (k, j) in (first..end).enumerate() {
+            self.paint_row(j, &mut rows[k * length..]);
         }
     }
 
-    fn paint_row<I: PixelFormat>(&mut self, j: usize, row: &mut [I]) {
-        let columns = self.buffer.window.columns;
+    /// Paints row j into the first pixels. Some of the next row may be painted too, before its turn.
+    fn paint_row<I: PixelFormat>(&mut self, j: usize, pixels: &mut [I]) {
+        let (left, right) = self.buffer.window.columns;
         let y = self.plane.y(j);
-        let (surfaces, depths) = self.buffer.span(j, columns);
+        let (surfaces, depths) = self.buffer.span(j, (left, right + LANES));
+        let surfaces = &surfaces[..right - left];
         let mut first = 0;
-        while first < row.len() {
+        while first < surfaces.len() {
             let next = first + run_length(&surfaces[first..]);
-            let pixels = &mut row[first..next];
-            let column = columns.0 + first;
+            let (run, column) = (first..next, left + first);
             match self.paints.get(surfaces[first] as usize) {
-                None => I::fill(pixels, &self.light.sky(y)),
-                Some(Paint::Even(swatch)) => I::fill(pixels, swatch),
+                None => I::fill(&mut pixels[run], &self.light.sky(y)),
+                Some(Paint::Even(swatch)) => I::fill(&mut pixels[run], swatch),
                 Some(Paint::Checker(checker)) => {
-                    checker.paint(pixels, column, columns.0 + next, y, &self.plane);
+                    checker.paint(&mut pixels[run], column, left + next, y, &self.plane);
                 }
                 Some(Paint::SmoothShading(shaded)) => {
-                    shaded.paint(pixels, &depths[first..next], (column, j));
+                    let (depths, _) = depths[first..].as_chunks();
+                    let depths = &depths[..(next - first).div_ceil(LANES)];
+                    shaded.paint(&mut pixels[first..], depths, (column, j));
                 }
             }
             first = next;

@@ -1,9 +1,7 @@
 //! Pixel formats of pictures: 8-bit colours, or their luminance.
 
 use super::swatch::{Swatch, fill};
-
-/// Pixels shaded at a time, as one vector.
-pub(crate) const LANES: usize = 4;
+pub(crate) use crate::raster::depth_buffer::LANES;
 
 /// What the painter writes into a pixel.
 pub(crate) trait PixelFormat: Copy {

@@ -69,33 +69,26 @@ impl SmoothShading {
         }
     }
 
-    /// Paints a run of pixels of row j from column `first` on. A pixel's colour
-    /// does not depend on the run that it is in.
+    /// Paints pixels of row j from column `first` on: as many as there are inverse depths, or all. A
+    /// pixel's colour does not depend on the run that it is in.
     pub(crate) fn paint<I: PixelFormat>(
         &self,
         pixels: &mut [I],
-        depths: &[f32],
+        inverse_depths: &[[f32; LANES]],
         (first, j): (usize, usize),
     ) {
         let y = offset(j, self.origin.row);
-        let start = offset(first, self.origin.column);
+        let mut x = offset(first, self.origin.column);
         let terms = self.terms.each_ref().map(|term| term.row(y));
-        let mut k = 0;
-        while let Some(depths) = depths[k..].first_chunk() {
-            pixels[k..k + LANES].copy_from_slice(&self.block(&terms, start + k as f32, depths));
-            k += LANES;
+        let (blocks, rest) = pixels.as_chunks_mut();
+        let last = inverse_depths.get(blocks.len());
+        for (pixels, inverse_depths) in blocks.iter_mut().zip(inverse_depths) {
+            *pixels = self.block(&terms, x, inverse_depths);
+            x += LANES as f32;
         }
-        if k == pixels.len() {
-            return;
-        }
-        if let Some(depths) = depths.last_chunk() {
-            // Some pixels twice rather than a part of a vector.
-            let k = pixels.len() - LANES;
-            pixels[k..].copy_from_slice(&self.block(&terms, start + k as f32, depths));
-        } else {
-            let depths = std::array::from_fn(|k| depths.get(k).copied().unwrap_or(1.0));
-            let painted = self.block(&terms, start, &depths);
-            for (pixel, painted) in pixels.iter_mut().zip(painted) {
+        if let Some(inverse_depths) = last {
+            let painted: [I; LANES] = self.block(&terms, x, inverse_depths);
+            for (pixel, painted) in rest.iter_mut().zip(painted) {
                 *pixel = painted;
             }
         }

@@ -3,6 +3,7 @@
 import json
 import re
 import runpy
+import shlex
 import sys
 
 import pytest
@@ -82,8 +83,11 @@ RUNS = {
         r"\| icub \| obstacle x eye, Hebb \| peak \| 20 \| \d\.\d{3} \| \d\.\d{3} \|",
     ),
     "changed_body.py": (
-        "--movements 20 --repair 10 --ppo 512 --ppo-repair 512 --seeds 1 --tests 9 --changes none",
-        r"\| PPO \| none \| 512 \| \d\.\d{3} \| \d\.\d{3} \|",
+        (
+            "--movements 20 --repair 10 --ppo 512 --ppo-repair 512 --seeds 1 --tests 9 "
+            "--changes 'elbow to 100°'"
+        ),
+        r"\| PPO \| elbow to 100° \| 512 \| \d\.\d{3} \| \d\.\d{3} \|",
     ),
     "own_chain.py": ("--babbles 5 --cases 4", r"6 cm: held [01]\.\d{3}"),
     "own_chunk.py": (
@@ -107,9 +111,10 @@ def test_every_example_runs_somewhere(repository):
 @pytest.mark.parametrize("name", RUNS)
 def test_last_line(name, repository, monkeypatch, capsys, tmp_path):
     arguments, expected = RUNS[name]
+    words = shlex.split(arguments.format(folder=tmp_path))
     path = repository / "examples" / name
     monkeypatch.syspath_prepend(str(path.parent))  # As for `python examples/NAME`.
-    monkeypatch.setattr(sys, "argv", [str(path), *arguments.format(folder=tmp_path).split()])
+    monkeypatch.setattr(sys, "argv", [str(path), *words])
     runpy.run_path(str(path), run_name="__main__")
     last = capsys.readouterr().out.strip().splitlines()[-1]
     assert re.fullmatch(expected, last), last
@@ -132,7 +137,7 @@ def test_last_line(name, repository, monkeypatch, capsys, tmp_path):
 )
 def test_an_experiment_prints_json(name, keys, repository, monkeypatch, capsys):
     path = repository / "examples" / name
-    monkeypatch.setattr(sys, "argv", [str(path), *RUNS[name][0].split(), "--json"])
+    monkeypatch.setattr(sys, "argv", [str(path), *shlex.split(RUNS[name][0]), "--json"])
     runpy.run_path(str(path), run_name="__main__")
     printed = json.loads(capsys.readouterr().out)
     assert keys <= set(printed[0] if isinstance(printed, list) else printed)

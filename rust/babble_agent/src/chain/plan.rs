@@ -1,5 +1,6 @@
 //! Where an agent is in the chain that it plays.
 
+use super::carrying::Carrying;
 use super::route::RouteChoice;
 
 /// A link of the chain.
@@ -19,6 +20,8 @@ pub enum Phase {
     Advance,
     /// The hand closes, the arm stays.
     Close,
+    /// The arm carries the object to its goal.
+    Carry,
 }
 
 /// Postures of a chain that is played \[rad\].
@@ -39,6 +42,8 @@ pub struct ChainPlan {
     /// The way that was chosen at the beginning.
     pub choice: RouteChoice,
     pub(super) targets: Targets,
+    /// How the object is to be carried, if it is.
+    pub(super) carrying: Option<Carrying>,
     /// Shoulder and elbow when this link began \[rad\].
     pub(super) from: [f64; 2],
     /// Whether the hand is a fist on its way.

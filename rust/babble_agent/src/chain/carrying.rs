@@ -9,20 +9,11 @@ use babble_env::tasks::grasp::{FOVEA_NEURONS, at};
 
 use super::acting::{ChainPolicy, Felt, LOOSE_STEPS};
 use super::code::size;
-use super::plan::{ChainPlan, Phase};
+use super::plan::{Carrying, ChainPlan, Phase};
 use crate::error::AgentError;
 
 /// Control steps with a grip before the arm moves.
 const GRIP_STEPS: u32 = 10;
-
-/// An object that is to be carried.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Carrying {
-    /// Shoulder and elbow that hold it at its goal \[rad\].
-    pub(super) posture: [f64; 2],
-    /// Control steps with a grip.
-    gripped: u32,
-}
 
 impl ChainPolicy<'_> {
     /// How to carry the object that is seen to the goal that comes after the senses, a place (x, y) \[m\];

@@ -1,6 +1,5 @@
 //! Where an agent is in the chain that it plays.
 
-use super::carrying::Carrying;
 use super::route::RouteChoice;
 
 /// A link of the chain.
@@ -30,6 +29,15 @@ pub(super) struct Targets {
     pub pregrasp: [f64; 2],
     pub contact: [f64; 2],
     pub hand: [f64; 2],
+}
+
+/// An object that is to be carried.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Carrying {
+    /// Shoulder and elbow that hold it at its goal \[rad\].
+    pub(super) posture: [f64; 2],
+    /// Control steps with a grip.
+    pub(super) gripped: u32,
 }
 
 /// A chain under way.

@@ -16,8 +16,8 @@ from gym_babble import HebbBabbling, evaluate, scenarios
 
 parser = argparse.ArgumentParser(description=__doc__)
 parser.add_argument("--cases", type=int, default=10_000, help="learning cases of the vote")
-parser.add_argument("--tests", type=int, default=1_000, help="tests of each seed")
-parser.add_argument("--seeds", type=int, default=3, help="seeds of tests and babbling, from 0 on")
+parser.add_argument("--tests", type=int, default=1_000, help="cases of each seed, from 1,000 on")
+parser.add_argument("--seeds", type=int, default=5, help="seeds of learning, from 20 on")
 parser.add_argument("--movements", type=int, default=20_000, help="legal movements of the agent")
 parser.add_argument("--json", action="store_true", help="print one JSON document")
 arguments = parser.parse_args()
@@ -63,20 +63,32 @@ def rates_of(sees: list[int], learning: tuple, tests: list[tuple]) -> list[float
     return [rate[best] for rate in rates[1:]]
 
 
+def rates_of_side(tests: list[tuple]) -> list[float]:
+    """Success in each of the tests of one curve, always as wide, to the side that succeeds."""
+    rates, half = [], len(B1) // 2
+    for *_, succeeds in tests:
+        left = succeeds[:, half:].any(axis=1, keepdims=True)
+        rates.append(np.where(left, succeeds[:, half:], succeeds[:, half::-1]).mean(axis=0))
+    best = int(np.argmax(rates[0]))
+    return [rate[best] for rate in rates[1:]]
+
+
 learning = played(scenarios("table1", arguments.cases, 900, split="validation"))
 drawn = [scenarios("table1", arguments.tests, 901, split="validation")]
-drawn += [scenarios("table1", arguments.tests, seed) for seed in range(arguments.seeds)]
+drawn += [scenarios("table1", arguments.tests, 1_000 + k) for k in range(arguments.seeds)]
 tests = [played(cases) for cases in drawn]
 constant = int(learning[2].mean(axis=0).argmax())
 hebb = []
-for seed, cases in enumerate(drawn[1:]):
+for seed, cases in enumerate(drawn[1:], start=20):
     agent = HebbBabbling(PATTERN, seed=seed).learn(arguments.movements)
     hebb.append(evaluate(agent, PATTERN, cases).rate("success"))
 rates = {
     "constant": [test[2][:, constant].mean() for test in tests[1:]],
     "hebb": hebb,
     "vote_obstacle": rates_of([0], learning, tests),
+    "vote_eye": rates_of([1], learning, tests),
     "vote_obstacle_eye": rates_of([0, 1], learning, tests),
+    "side": rates_of_side(tests),
     "any": [test[2].any(axis=1).mean() for test in tests[1:]],
 }
 if arguments.json:

@@ -24,13 +24,20 @@ parser.add_argument("--json", action="store_true", help="print one JSON document
 arguments = parser.parse_args()
 
 PATTERN = "BabbleReachPattern-v0"
-HEBB = {"name": "hebb", "eta": 1.0, "w_max": 0.2, "xi": 0.2}
+HEBB = {"name": "hebb", "eta": 1.0}
+EYE = {"obstacle_neurons": 2, "obstacle_field_deg": 180.0, "target_neurons": 11}
+"""An obstacle's map so coarse that it tells nothing."""
 FINE = {"obstacle_neurons": 41, "obstacle_field_deg": 40.0}
+EARLY = {"rule": HEBB | {"w_max": 0.02}, "input_gain": 200.0}
+"""Learns from few movements."""
 NETWORKS: dict[str, tuple[str, dict[str, Any]]] = {
     "obstacle, Eq. 7": ("paper", {}),
+    "obstacle, Hebb": ("paper", {"rule": HEBB}),
     "fine obstacle, Hebb": ("paper", {"rule": HEBB | {"eta": 0.1}, **FINE}),
+    "eye, Eq. 7": ("conjunctive", EYE),
+    "eye, Hebb": ("conjunctive", EYE | EARLY),
     "obstacle x eye, Eq. 7": ("conjunctive", {}),
-    "obstacle x eye, Hebb, gain 20": ("conjunctive", {"rule": HEBB, "input_gain": 20.0}),
+    "obstacle x eye, Hebb": ("conjunctive", EARLY),
 }
 """Variant and numbers of the brain."""
 READOUTS = {

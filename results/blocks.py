@@ -92,9 +92,11 @@ def vote(stores: Stores) -> str:
     """What can be had from the obstacle's direction alone."""
     titles = {
         "constant": ("the best constant", "nothing"),
+        "vote_eye": ("vote", "eye"),
         "hebb": ("Hebb `paper`", "obstacle"),
         "vote_obstacle": ("vote", "obstacle"),
         "vote_obstacle_eye": ("vote", "obstacle and eye"),
+        "side": ("one curve to the side that succeeds", "the side"),
         "any": ("any b1 that succeeds", ""),
     }
     rows = []
@@ -104,23 +106,50 @@ def vote(stores: Stores) -> str:
     return markdown(["choice of b1", "sees", "success", "by seed"], rows)
 
 
+READOUTS = {"mean": "mean of the map, Eq. 4", "peak": "around the strongest neuron"}
+
+
 def readouts(stores: Stores) -> str:
     """Which rule, map and readout come how near to what the obstacle's direction allows."""
     titles = {
         "obstacle, Eq. 7": "Eq. 7, 21 × 21 over ± 60°",
+        "obstacle, Hebb": "Hebb, η = 1, 21 × 21 over ± 60°",
         "fine obstacle, Hebb": "Hebb, η = 0.1, 41 × 41 over ± 40°",
     }
-    readouts = {"mean": "mean of the map, Eq. 4", "peak": "around the strongest neuron"}
     rows = [
         [
             titles[row["network"]],
-            readouts[row["readout"]],
+            READOUTS[row["readout"]],
             share(row["success"]),
             ", ".join(map(share, row["by_seed"])),
         ]
-        for row in stores["readouts"]["obstacle"]
+        for row in (*stores["readouts"]["paper"], *stores["readouts"]["fine"])
+        if row["network"] in titles and row["movements"] == 20_000
     ]
     return markdown(["rule and map", "readout", "success", "by seed"], rows)
+
+
+def inputs(stores: Stores) -> str:
+    """Which input, rule and readout let an agent reach, after few and after many movements."""
+    found = [row for run in ("paper", "icub") for row in stores["readouts"][run]]
+    rates = {
+        (row["network"], row["readout"], row["body"], row["movements"]): row["by_seed"]
+        for row in found
+    }
+    columns = [(body, n) for body in ("paper", "icub") for n in (250, 20_000)]
+    rows = []
+    for sees in ("obstacle", "eye", "obstacle x eye"):
+        for rule in ("Eq. 7", "Hebb"):
+            for readout, title in READOUTS.items():
+                cells = [rates.get((f"{sees}, {rule}", readout, *column)) for column in columns]
+                numbers = [_with_span(by_seed) if by_seed else "–" for by_seed in cells]
+                rows.append([sees.replace("x", "×"), rule, title, *numbers])
+    heads = [f"`{body}`, {n:,}" for body, n in columns]
+    return markdown(["input", "rule", "readout", *heads], rows)
+
+
+def _with_span(rates: list[float]) -> str:
+    return f"{share(fmean(rates))} ({span(min(rates), max(rates))})"
 
 
 def changed_body(stores: Stores) -> str:
@@ -361,7 +390,7 @@ def tuning(stores: Stores) -> str:
 BLOCKS: dict[str, Callable[[Stores], str]] = {
     block.__name__: block
     for block in (
-        *(table1_short, table1, fig4, sensitivity, vote, readouts, changed_body),
+        *(table1_short, table1, fig4, sensitivity, vote, readouts, inputs, changed_body),
         *(table2_short, table2, hands, holding),
         *(
             sizes,

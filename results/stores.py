@@ -17,6 +17,9 @@ REACHING = "--env-id BabbleReachPattern-v0"
 HOLD = "python examples/grasp_sizes.py"
 STEPS = "--env-id BabbleReach-v0"
 GRASPING = "--env-id BabbleGrasp-v0"
+READOUTS = "python examples/readouts.py"
+INPUTS = '"obstacle, Eq. 7" "obstacle, Hebb" "eye, Eq. 7" "eye, Hebb"'
+PAIRS = '"obstacle x eye, Eq. 7" "obstacle x eye, Hebb"'
 SOLVED = ("BabbleReachGoal-v0", "BabbleGrasp-v0")
 
 STORES: dict[str, dict[str, str]] = {
@@ -48,8 +51,9 @@ STORES: dict[str, dict[str, str]] = {
     "sensitivity": {"rows": "python examples/sensitivity.py"},
     "vote": {"rows": "python examples/obstacle_alone.py"},
     "readouts": {
-        "obstacle": "python examples/readouts.py --bodies paper --seeds 2 --movements 20000 "
-        '--networks "obstacle, Eq. 7" "fine obstacle, Hebb"',
+        "paper": f"{READOUTS} --bodies paper --networks {INPUTS} {PAIRS}",
+        "icub": f"{READOUTS} --bodies icub --networks {PAIRS}",
+        "fine": f'{READOUTS} --bodies paper --movements 20000 --networks "fine obstacle, Hebb"',
     },
     "changed_body": {
         "hebb": "python examples/changed_body.py --ppo 0 --movements 2000 --repair 250 1000 "
@@ -94,9 +98,15 @@ def derived(stores: Stores) -> dict[str, float]:
     changed = {row["change"]: row["success"] for row in stores["sensitivity"]["rows"]}
     none = changed.pop("none")
     del changed["camera frame fick"]
+    voted = {choice: found["success"] for choice, found in stores["vote"]["rows"].items()}
+    (fine,) = (row["success"] for row in stores["readouts"]["fine"] if row["readout"] == "peak")
     return {
         "above_paper": ours - paper_tally()["success"]["rate"],
         "inside_big_cm": -stores["interference"]["rows"][5]["mean"][0],
+        "missed": 100 * (1 - voted["hebb"]),
+        "missed_by_input": 100 * (1 - voted["vote_obstacle"]),
+        "missed_by_rule": 100 * (voted["vote_obstacle"] - voted["hebb"]),
+        "won_back": 100 * (fine - voted["hebb"]),
         "of_a_row": 1.96 * (none * (1 - none) / 2_000) ** 0.5,
         "of_other_changes": max(abs(success - none) for success in changed.values()),
     }

@@ -79,7 +79,7 @@ RUNS = {
     ),
     "readouts.py": (
         "--bodies icub --movements 20 --seeds 1 --tests 10",
-        r"\| icub \| obstacle x eye, Hebb, gain 20 \| peak \| 20 \| \d\.\d{3} \| \d\.\d{3} \|",
+        r"\| icub \| obstacle x eye, Hebb \| peak \| 20 \| \d\.\d{3} \| \d\.\d{3} \|",
     ),
     "changed_body.py": (
         "--movements 20 --repair 10 --ppo 512 --ppo-repair 512 --seeds 1 --tests 9 --changes none",

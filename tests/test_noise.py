@@ -179,3 +179,11 @@ def test_babbles_of_reaching_have_the_noise():
     some, again = (babble(shaky, 300, 1, threads=threads) for threads in (1, 2))
     assert_same(vars(some), vars(again))
     assert (some.outcome != plain.outcome[:300]).any()
+
+
+def test_babbles_of_grasping_have_no_noise():
+    plain, noisy = (
+        babble(gym.make("BabbleGrasp-v0", config=config), 6, 1)
+        for config in ("paper", {"noise": ALL})
+    )
+    assert_same(vars(noisy), vars(plain))

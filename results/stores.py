@@ -80,6 +80,7 @@ STORES: dict[str, dict[str, str]] = {
     "sides": {"scripted": "python examples/grasp_sides.py"},
     "basin": {"elbow": "python examples/grasp_basin.py"},
     "movements": {"rows": "python examples/grasp_movements.py"},
+    "carry": {"chain": "python examples/grasp_carry.py"},
     "interference": {"rows": "python examples/grasp_interference.py --seeds 2"},
 }
 """For each store its runs, each with its command; `--json` is added."""

@@ -53,6 +53,10 @@ RUNS = {
         "--seeds 1 --babbles 5 --cases 2 --diameters 6",
         r"\{'seed': 0, .+ 'held': [01]\.\d, .+\}",
     ),
+    "grasp_carry.py": (
+        "--seeds 1 --babbles 5 --cases 2 --diameters 6",
+        r"\{'seed': 0, .+ 'carried': [01]\.\d, .+\}",
+    ),
     "grasp_basin.py": (
         "--trials 2 --diameters 2.4 --places 2.6 3.8 1.2 --figure {folder}/basin.png",
         r"\| 2\.4 \| 3\.8 \| 1\.00 \|",
@@ -128,6 +132,7 @@ def test_last_line(name, repository, monkeypatch, capsys, tmp_path):
         ("sensitivity.py", {"change", "success", "collision", "joint_limit", "legal_rate"}),
         ("grasp_sizes.py", {"diameter", "held", "edges"}),
         ("grasp_chain.py", {"diameter_cm", "held", "kept", "control_steps"}),
+        ("grasp_carry.py", {"diameter_cm", "carried", "held", "distance_cm"}),
         ("grasp_movements.py", {"babbles", "units", "straightness", "palm_first", "held"}),
         ("grasp_sides.py", {"rows", "all"}),
         ("solvable.py", {"id", "control", "cases", "scripted", "oracle"}),

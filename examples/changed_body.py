@@ -32,8 +32,10 @@ PATTERN = "BabbleReachPattern-v0"
 CHANGES: dict[str, dict[str, Any]] = {
     "none": {},
     "elbow to 100°": {"body": {"joints": {"elbow": {"upper_deg": 100.0}}}},
+    "elbow to 85°": {"body": {"joints": {"elbow": {"upper_deg": 85.0}}}},
     "forearm + 3 cm": {"body": {"arm": {"forearm_m": 0.16}}},
     "half the stiffness": {"body": {"muscles": {"kp": 25.0}}},
+    "a fifth of the stiffness": {"body": {"muscles": {"kp": 10.0}}},
     "eye 4 cm to the right": {"body": {"eye": {"position_m": [0.04, 0.1, 0.25]}}},
     "noise of senses": {"noise": {"eye_deg": 2.0, "sight_deg": 2.0}},
     "noise of muscles": {"noise": {"motor_deg": 10.0}},
@@ -65,7 +67,9 @@ def ppo(seed: int) -> Iterator[tuple[str, int, Any]]:
     for change, config in CHOSEN.items():
         stored.seek(0)
         env = BabbleVecEnv(PATTERN, model.n_envs, config=config, threads=1)
-        moved = PPO.load(stored, env=env, device="cpu")
+        # Bounds of senses follow from the joint ranges.
+        bounds = {"observation_space": env.observation_space}
+        moved = PPO.load(stored, env=env, device="cpu", custom_objects=bounds)
         yield change, 0, moved
         done = 0
         for movements in sorted(arguments.ppo_repair):

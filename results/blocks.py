@@ -367,6 +367,22 @@ def movements(stores: Stores) -> str:
     return markdown([*heads, "to hold [s]", *sizes], rows)
 
 
+def carry(stores: Stores) -> str:
+    """How often the chain holds objects at their goals."""
+    found: dict[float, list[dict[str, Any]]] = {}
+    for row in stores["carry"]["chain"]:
+        found.setdefault(row["diameter_cm"], []).append(row)
+    rows = []
+    for size, of_size in found.items():
+        carried = [row["carried"] for row in of_size]
+        rows.append([f"{size:g}", f"{sum(row['cases'] for row in of_size):,}"])
+        rows[-1] += [share(fmean(carried)), span(min(carried), max(carried))]
+        rows[-1] += [share(fmean(row["held"] for row in of_size))]
+        rows[-1] += [f"{fmean(row['distance_cm'] for row in of_size):.2f}"]
+    heads = ["diameter [cm]", "cases", "held within 2 cm of the goal", "seeds", "held anywhere"]
+    return markdown([*heads, "distance of held ones [cm]"], rows)
+
+
 def roster(_: Stores) -> str:
     """The agents that a study can name."""
     rows = []
@@ -425,6 +441,7 @@ BLOCKS: dict[str, Callable[[Stores], str]] = {
             basin,
             chain,
             movements,
+            carry,
             solved,
             tuning,
             roster,

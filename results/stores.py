@@ -57,7 +57,8 @@ STORES: dict[str, dict[str, str]] = {
     },
     "changed_body": {
         "hebb": "python examples/changed_body.py --ppo 0 --movements 2000 --repair 250 1000 "
-        "--seeds 1 --tests 500",
+        '--seeds 1 --tests 500 --changes none "elbow to 100°" "forearm + 3 cm" '
+        '"half the stiffness" "eye 4 cm to the right" "noise of senses" "noise of muscles"',
     },
     "fig4": {"paper": "gym-babble reproduce fig4"},
     "fig5": {"paper": "gym-babble reproduce fig5"},
@@ -83,6 +84,7 @@ STORES: dict[str, dict[str, str]] = {
     },
     "basin": {"elbow": "python examples/grasp_basin.py"},
     "movements": {"rows": "python examples/grasp_movements.py"},
+    "carry": {"chain": "python examples/grasp_carry.py"},
     "interference": {"rows": "python examples/grasp_interference.py --seeds 2"},
 }
 """For each store its runs, each with its command; `--json` is added."""

@@ -3,6 +3,7 @@
 import json
 import re
 import runpy
+import shlex
 import sys
 
 import pytest
@@ -52,6 +53,10 @@ RUNS = {
         "--seeds 1 --babbles 5 --cases 2 --diameters 6",
         r"\{'seed': 0, .+ 'held': [01]\.\d, .+\}",
     ),
+    "grasp_carry.py": (
+        "--seeds 1 --babbles 5 --cases 2 --diameters 6",
+        r"\{'seed': 0, .+ 'carried': [01]\.\d, .+\}",
+    ),
     "grasp_basin.py": (
         "--trials 2 --diameters 2.4 --places 2.6 3.8 1.2 --figure {folder}/basin.png",
         r"\| 2\.4 \| 3\.8 \| 1\.00 \|",
@@ -82,8 +87,11 @@ RUNS = {
         r"\| icub \| obstacle x eye, Hebb \| peak \| 20 \| \d\.\d{3} \| \d\.\d{3} \|",
     ),
     "changed_body.py": (
-        "--movements 20 --repair 10 --ppo 512 --ppo-repair 512 --seeds 1 --tests 9 --changes none",
-        r"\| PPO \| none \| 512 \| \d\.\d{3} \| \d\.\d{3} \|",
+        (
+            "--movements 20 --repair 10 --ppo 512 --ppo-repair 512 --seeds 1 --tests 9 "
+            "--changes 'elbow to 100°'"
+        ),
+        r"\| PPO \| elbow to 100° \| 512 \| \d\.\d{3} \| \d\.\d{3} \|",
     ),
     "own_chain.py": ("--babbles 5 --cases 4", r"6 cm: held [01]\.\d{3}"),
     "own_chunk.py": (
@@ -107,9 +115,10 @@ def test_every_example_runs_somewhere(repository):
 @pytest.mark.parametrize("name", RUNS)
 def test_last_line(name, repository, monkeypatch, capsys, tmp_path):
     arguments, expected = RUNS[name]
+    words = shlex.split(arguments.format(folder=tmp_path))
     path = repository / "examples" / name
     monkeypatch.syspath_prepend(str(path.parent))  # As for `python examples/NAME`.
-    monkeypatch.setattr(sys, "argv", [str(path), *arguments.format(folder=tmp_path).split()])
+    monkeypatch.setattr(sys, "argv", [str(path), *words])
     runpy.run_path(str(path), run_name="__main__")
     last = capsys.readouterr().out.strip().splitlines()[-1]
     assert re.fullmatch(expected, last), last
@@ -123,6 +132,7 @@ def test_last_line(name, repository, monkeypatch, capsys, tmp_path):
         ("sensitivity.py", {"change", "success", "collision", "joint_limit", "legal_rate"}),
         ("grasp_sizes.py", {"diameter", "held", "edges"}),
         ("grasp_chain.py", {"diameter_cm", "held", "kept", "control_steps"}),
+        ("grasp_carry.py", {"diameter_cm", "carried", "held", "distance_cm"}),
         ("grasp_movements.py", {"babbles", "units", "straightness", "palm_first", "held"}),
         ("grasp_sides.py", {"rows", "all"}),
         ("solvable.py", {"id", "control", "cases", "scripted", "oracle"}),
@@ -132,7 +142,7 @@ def test_last_line(name, repository, monkeypatch, capsys, tmp_path):
 )
 def test_an_experiment_prints_json(name, keys, repository, monkeypatch, capsys):
     path = repository / "examples" / name
-    monkeypatch.setattr(sys, "argv", [str(path), *RUNS[name][0].split(), "--json"])
+    monkeypatch.setattr(sys, "argv", [str(path), *shlex.split(RUNS[name][0]), "--json"])
     runpy.run_path(str(path), run_name="__main__")
     printed = json.loads(capsys.readouterr().out)
     assert keys <= set(printed[0] if isinstance(printed, list) else printed)

@@ -202,6 +202,14 @@ class HebbBabbling(Planner):
                 self._core.practise(self._interface.task, some)
         return self
 
+    def _senses(self, observation: Observation) -> NDArray[np.float32]:
+        """Flat senses, for "chain" in the goal form with the goal after them."""
+        senses = super()._senses(observation)
+        goal = observation.get("desired_goal") if isinstance(observation, dict) else None
+        if goal is None or self.variant != "chain":
+            return senses
+        return np.concatenate([senses, _goals(goal, senses.shape[:-1])], axis=-1)
+
     def decide(self, observation: Observation) -> NDArray[np.float64]:
         """What the maps are read out as for one observation (k,), or for n of them (n, k).
 
@@ -516,3 +524,18 @@ def _merge(numbers: dict[str, Any], changes: Mapping[str, Any], path: str) -> No
             _merge(numbers[name], value, f"{path}.{name}")
         else:
             numbers[name] = value
+
+
+def _goals(given: Any, shape: tuple[int, ...]) -> NDArray[np.float32]:
+    """Places to carry objects to (2,) or (n, 2) [m].
+
+    Raises:
+        ConfigError: They are not finite numbers, or have another shape than the observation.
+    """
+    try:
+        goals = np.asarray(given, np.float32)
+    except (OverflowError, TypeError, ValueError) as error:
+        raise ConfigError(f"desired_goal = {shown(given)}: {error}") from error
+    if goals.shape != (*shape, 2):
+        raise ConfigError(f"desired_goal has shape {goals.shape}, expected {(*shape, 2)}")
+    return goals

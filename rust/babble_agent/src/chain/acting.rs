@@ -31,23 +31,23 @@ const OPEN: f64 = 12.0 * DEG;
 /// Control steps that the hand has to close before it gives up.
 const CLOSE_STEPS: u32 = 70;
 /// It gives up after it has not felt the object for so many control steps.
-const LOOSE_STEPS: u32 = 10;
+pub(super) const LOOSE_STEPS: u32 = 10;
 
 const DEG: f64 = std::f64::consts::PI / 180.0;
 
 /// What is felt in a control step.
-struct Felt {
-    arm: [f64; 2],
-    hand: [f64; 2],
-    palm: bool,
-    grips: bool,
+pub(super) struct Felt {
+    pub arm: [f64; 2],
+    pub hand: [f64; 2],
+    pub palm: bool,
+    pub grips: bool,
 }
 
 /// An agent that acts on a network's recall.
 #[derive(Debug)]
 pub struct ChainPolicy<'a> {
-    task: Arc<GraspTask>,
-    network: &'a ChainNetwork,
+    pub(super) task: Arc<GraspTask>,
+    pub(super) network: &'a ChainNetwork,
 }
 
 impl<'a> ChainPolicy<'a> {
@@ -75,6 +75,7 @@ impl<'a> ChainPolicy<'a> {
         senses: &[f32],
         choose: impl FnOnce(&State) -> RouteChoice,
     ) -> Result<ChainPlan, AgentError> {
+        let carrying = self.carrying(senses)?;
         // The senses that an option adds come last.
         let senses = observation::<SENSES>(&senses[..senses.len().min(SENSES)])?;
         let targets = self.targets(senses)?;
@@ -86,6 +87,7 @@ impl<'a> ChainPolicy<'a> {
             step: 0,
             choice,
             targets,
+            carrying,
             from: felt.arm,
             fist: detour,
             loose: 0,
@@ -144,7 +146,7 @@ impl<'a> ChainPolicy<'a> {
         let arm = self.arm_target(plan);
         let ranges = self.task.robot.ranges();
         let hand = match plan.phase {
-            Phase::Close => plan.targets.hand,
+            Phase::Close | Phase::Carry => plan.targets.hand,
             Phase::Fold | Phase::Turn | Phase::Extend | Phase::Reach if plan.fist => {
                 [ranges[2][1], ranges[3][1]]
             }
@@ -169,6 +171,7 @@ impl<'a> ChainPolicy<'a> {
                 })
             }
             Phase::Close => plan.from,
+            Phase::Carry => plan.carrying.as_ref().map_or(plan.from, |c| c.posture),
         }
     }
 
@@ -241,11 +244,13 @@ impl<'a> ChainPolicy<'a> {
             Phase::Advance => self.end_advance(plan, felt, senses),
             Phase::Close => {
                 plan.loose = if felt.grips { 0 } else { plan.loose + 1 };
+                Self::lift(plan, felt);
                 if plan.step >= CLOSE_STEPS && plan.loose > LOOSE_STEPS {
                     self.look(plan, senses);
                     plan.enter(Phase::Reach, felt.arm);
                 }
             }
+            Phase::Carry => self.keep(plan, felt, senses),
             _ => {}
         }
     }
@@ -270,7 +275,7 @@ impl<'a> ChainPolicy<'a> {
     }
 
     /// Looks again; what is seen now recalls the postures from now on.
-    fn look(&self, plan: &mut ChainPlan, senses: &[f32]) {
+    pub(super) fn look(&self, plan: &mut ChainPlan, senses: &[f32]) {
         if let Ok(targets) = self.targets(senses) {
             plan.targets = targets;
         }
@@ -279,7 +284,8 @@ impl<'a> ChainPolicy<'a> {
 
 impl Policy for ChainPolicy<'_> {
     fn senses_len(&self) -> usize {
-        self.task.senses_len()
+        // The goal comes after the senses.
+        self.task.senses_len() + if self.task.options.goal { 2 } else { 0 }
     }
 
     fn action_len(&self) -> usize {

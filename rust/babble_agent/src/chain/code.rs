@@ -66,11 +66,11 @@ impl Input {
         }
     }
 
-    /// Activity for what is seen: pan and tilt over their ranges, and the edges in the fovea.
+    /// Activity for what is seen: pan and tilt over their ranges, and the [`size`].
     ///
     /// # Errors
     /// [`AgentError::Brain`] never, as any sight is encoded.
-    pub fn encode(&self, eye: [f32; 2], fovea: &[f32]) -> Result<Vec<f32>, AgentError> {
+    pub fn encode(&self, eye: [f32; 2], size: f64) -> Result<Vec<f32>, AgentError> {
         let mut g = vec![0.0; self.neurons()];
         let eye = eye.map(f64::from);
         match self {
@@ -83,7 +83,7 @@ impl Input {
                     }
                 }
             }
-            Self::EyeAndSize(pairs) => pairs.encode(&eye, &[size(fovea)], &mut g)?,
+            Self::EyeAndSize(pairs) => pairs.encode(&eye, &[size], &mut g)?,
         }
         Ok(g)
     }

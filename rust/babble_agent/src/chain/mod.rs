@@ -9,6 +9,7 @@
 
 pub mod acting;
 pub mod brain;
+pub mod carrying;
 pub mod chunks;
 pub mod code;
 pub mod infant;

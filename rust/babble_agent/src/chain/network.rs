@@ -8,7 +8,7 @@ use babble_env::{Executor, GraspTask};
 
 use super::acting::ChainPolicy;
 use super::brain::ChainBrain;
-use super::code::{Input, arm, hand};
+use super::code::{Input, arm, hand, size};
 use super::practice;
 use super::route::{RouteChoice, Routes, State};
 use crate::error::AgentError;
@@ -103,7 +103,10 @@ impl Network for ChainNetwork {
         let mut g = Vec::with_capacity(experiences.len() * self.input.neurons());
         for experience in experiences {
             babble_brain::error::check_activity("fovea", &*experience.fovea)?;
-            g.extend(self.input.encode(experience.eye, &*experience.fovea)?);
+            g.extend(
+                self.input
+                    .encode(experience.eye, size(&*experience.fovea))?,
+            );
         }
         let encode = |map: &PopulationMap,
                       pair: fn(&Experience) -> [f32; 2]|
@@ -222,7 +225,7 @@ impl ChainNetwork {
         let senses = observation::<SENSES>(&senses[..senses.len().min(SENSES)])?;
         let eye = [senses[at::EYE], senses[at::EYE + 1]];
         self.input
-            .encode(eye, &senses[at::FOVEA..][..FOVEA_NEURONS])
+            .encode(eye, size(&senses[at::FOVEA..][..FOVEA_NEURONS]))
     }
 
     /// What a flat observation recalls, Eq. 4.
@@ -243,6 +246,20 @@ impl ChainNetwork {
             contact,
             hand,
         })
+    }
+
+    /// Shoulder and elbow at contact, as shares of their ranges, with an object of a
+    /// [`size`](super::code::size) where the eye looks: pan and tilt over their ranges.
+    ///
+    /// # Errors
+    /// [`AgentError::Brain`] never, as any sight is encoded.
+    pub fn contact(&self, eye: [f32; 2], size: f64) -> Result<[f64; 2], AgentError> {
+        let g = self.input.encode(eye, size)?;
+        let mut a = vec![0.0; self.arm.len()];
+        self.recall[1].recall(&g, &mut a)?;
+        let mut posture = [0.0; 2];
+        self.arm.read_out(&a, &mut posture)?;
+        Ok(posture)
     }
 
     /// The route that promises most.

@@ -19,6 +19,8 @@ pub enum Phase {
     Advance,
     /// The hand closes, the arm stays.
     Close,
+    /// The arm carries the object to its goal.
+    Carry,
 }
 
 /// Postures of a chain that is played \[rad\].
@@ -31,6 +33,15 @@ pub(super) struct Targets {
     pub grip: f64,
 }
 
+/// An object that is to be carried.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Carrying {
+    /// Shoulder and elbow that hold it at its goal \[rad\].
+    pub(super) posture: [f64; 2],
+    /// Control steps with a grip.
+    pub(super) gripped: u32,
+}
+
 /// A chain under way.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChainPlan {
@@ -41,6 +52,8 @@ pub struct ChainPlan {
     /// The way that was chosen at the beginning.
     pub choice: RouteChoice,
     pub(super) targets: Targets,
+    /// How the object is to be carried, if it is.
+    pub(super) carrying: Option<Carrying>,
     /// Shoulder and elbow when this link began \[rad\].
     pub(super) from: [f64; 2],
     /// Whether the hand is a fist on its way.

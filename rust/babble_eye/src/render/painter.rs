@@ -150,12 +150,22 @@ fn paint(surface: &VisibleSurface, primitive: &Primitive, light: &Light, brightn
 }
 
 /// How many pixels from the first on show the same surface.
+#[inline]
 fn run_length(surfaces: &[u32]) -> usize {
+    // Most runs are short, but some are as long as the row.
+    const SHORT: usize = 16;
     let id = surfaces[0];
-    let same = |block: &&[u32]| block.iter().fold(0, |all, surface| all | (surface ^ id)) == 0;
-    let whole = 4 * surfaces.chunks_exact(4).take_while(same).count();
-    let rest = surfaces[whole..]
-        .iter()
-        .take_while(|surface| **surface == id);
-    whole + rest.count()
+    let mut length = blocks_of::<LANES>(id, &surfaces[..surfaces.len().min(SHORT)]);
+    if length == SHORT {
+        length += blocks_of::<{ 2 * SHORT }>(id, &surfaces[length..]);
+        length += blocks_of::<LANES>(id, &surfaces[length..]);
+    }
+    length + blocks_of::<1>(id, &surfaces[length..])
+}
+
+/// How many pixels from the first on show a surface, in whole blocks of N.
+#[inline]
+fn blocks_of<const N: usize>(id: u32, surfaces: &[u32]) -> usize {
+    let same = |block: &&[u32; N]| block.iter().fold(0, |all, seen| all | (seen ^ id)) == 0;
+    N * surfaces.as_chunks().0.iter().take_while(same).count()
 }

@@ -158,6 +158,13 @@ impl GraspTask {
             .filter(|&q| self.arm.in_range(q) && self.clears_upper_arm(q[1], radius))
     }
 
+    /// Pan and tilt, over their ranges, of an eye that looks at a place in the arm's plane \[m\].
+    #[must_use]
+    pub fn gaze_on(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let gaze = self.eye.fixate(&Vector3::new(x, y, 0.0));
+        self.eye.normalised(self.eye.clipped(gaze))
+    }
+
     /// A diameter of the config \[m\].
     pub fn draw_diameter(&self, stream: &mut Stream) -> f64 {
         let numbers = &self.config.grasp;

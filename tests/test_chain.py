@@ -24,7 +24,7 @@ def rate(agent, tmp_path, centimetres, n):
     config = {"grasp": {"diameters_m": [centimetres / 100]}}
     agent.save(tmp_path / "agent")
     acting = HebbBabbling.load(tmp_path / "agent", gym.make(GRASP, config=config))
-    cases = scenarios("palm_side", n, 1_000, config=config)
+    cases = scenarios("palm_side", n, 600, config=config)
     return evaluate(acting, cases=cases).rate("held")
 
 
@@ -33,15 +33,15 @@ def agent():
     return chain(seed=1).learn(100)
 
 
-def test_it_holds_some_small_objects_after_a_hundred_babbles(agent, tmp_path):
-    # The paper's agent holds none of them.
-    assert rate(agent, tmp_path, 2.4, 40) >= 0.3
+def test_it_holds_small_objects_after_a_hundred_babbles(agent, tmp_path):
+    # The paper's agent holds none of them. Over many seeds .86, docs/grasping.md.
+    assert rate(agent, tmp_path, 2.4, 60) >= 0.7
 
 
 @pytest.mark.slow
 def test_it_holds_objects_of_all_sizes_after_a_thousand(tmp_path):
     agent = chain(seed=0).learn(1_000)
-    for centimetres, least in ((2.4, 0.97), (4, 0.97), (6, 0.97)):
+    for centimetres, least in ((2, 0.96), (2.4, 0.98), (4, 0.99), (6, 0.99)):
         assert rate(agent, tmp_path, centimetres, 200) >= least
 
 
@@ -112,7 +112,7 @@ def test_what_it_perceives_and_recalls_are_maps(agent):
     observation, _ = env.reset(seed=0)
     seen, recalled = agent.perceive(observation), agent.recall(observation)
     assert list(seen) == list(recalled) == ["pregrasp", "contact", "hand"]
-    assert seen["contact"].shape == (5, 31, 31)
+    assert seen["contact"].shape == (3, 31, 31)
     assert seen["contact"].sum() == pytest.approx(1, abs=1e-4)
     assert recalled["contact"].shape == (21, 21)
     weights = agent.weights

@@ -10,7 +10,7 @@ use super::chunks::ADVANCE_S;
 use super::infant::ADVANCE_RAD;
 use super::network::{ChainNetwork, Recalled};
 use super::plan::{ChainPlan, Phase, Targets};
-use super::route::{Detour, RouteChoice, Routes};
+use super::route::{Detour, RouteChoice, Routes, State};
 use crate::error::AgentError;
 use crate::grasp::policy::towards;
 use crate::network::Network;
@@ -73,13 +73,13 @@ impl<'a> ChainPolicy<'a> {
     pub fn begin(
         &self,
         senses: &[f32],
-        choose: impl FnOnce([f64; 3]) -> RouteChoice,
+        choose: impl FnOnce(&State) -> RouteChoice,
     ) -> Result<ChainPlan, AgentError> {
         // The senses that an option adds come last.
         let senses = observation::<SENSES>(&senses[..senses.len().min(SENSES)])?;
         let targets = self.targets(senses)?;
         let felt = self.felt(senses);
-        let choice = choose(self.state(&felt, &targets));
+        let choice = choose(&self.state(&felt, &targets));
         let detour = choice.number > 0;
         Ok(ChainPlan {
             phase: if detour { Phase::Fold } else { Phase::Reach },
@@ -92,16 +92,16 @@ impl<'a> ChainPolicy<'a> {
         })
     }
 
-    /// The turn of the shoulder ahead, the elbow, and the elbow before the grasp, over their ranges: the
-    /// difference vector of Bullock & Grossberg (1988), with the elbow as it is.
-    fn state(&self, felt: &Felt, targets: &Targets) -> [f64; 3] {
+    fn state(&self, felt: &Felt, targets: &Targets) -> State {
         let [[s0, s1], [e0, e1], ..] = *self.task.robot.ranges();
-        let elbow = |e: f64| (e - e0) / (e1 - e0);
-        [
-            (targets.pregrasp[0] - felt.arm[0]) / (s1 - s0),
-            elbow(felt.arm[1]),
-            elbow(targets.pregrasp[1]),
-        ]
+        let share = |x: f64, [low, high]: [f64; 2]| (x - low) / (high - low);
+        let [shoulder, elbow] = targets.pregrasp;
+        State {
+            turn: (shoulder - felt.arm[0]) / (s1 - s0),
+            elbow: share(felt.arm[1], [e0, e1]),
+            pregrasp: [share(shoulder, [s0, s1]), share(elbow, [e0, e1])],
+            grip: targets.grip,
+        }
     }
 
     fn targets(&self, senses: &[f32]) -> Result<Targets, AgentError> {
@@ -114,6 +114,7 @@ impl<'a> ChainPolicy<'a> {
         Ok(Targets {
             pregrasp: self.task.arm.denormalised(recalled.pregrasp),
             contact: self.task.arm.denormalised(recalled.contact),
+            grip: 1.0 - recalled.hand[1] / 90.0,
             hand: [0, 1].map(|i| {
                 let flexion = 90.0 - recalled.hand[i] + brain.squeeze_deg;
                 flexion.to_radians().min(reflex[i])

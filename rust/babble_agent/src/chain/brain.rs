@@ -33,7 +33,7 @@ pub struct Sequence {
     pub opening: bool,
     /// How the palm is taken off the object; by the elbow.
     pub withdrawal: Withdrawal,
-    /// Most that the shoulder is off when the arm comes back \[deg\]; 6. Objects then meet the palm in
+    /// Most that the shoulder is off when the arm comes back \[deg\]; 12. Objects then meet the palm in
     /// various places, and babbles that end in a hold teach the good ones.
     pub jitter_deg: f64,
 }
@@ -43,7 +43,7 @@ impl Default for Sequence {
         Self {
             opening: true,
             withdrawal: Withdrawal::Elbow,
-            jitter_deg: 6.0,
+            jitter_deg: 12.0,
         }
     }
 }
@@ -58,7 +58,7 @@ pub struct ChainBrain {
     pub rule: Rule,
     /// Neurons along each side of the eye's map; 31.
     pub eye_neurons: usize,
-    /// Units for the object's size, with each of which the eye's map is paired; 5. 1 for the eye alone.
+    /// Units for the object's size, with each of which the eye's map is paired; 3. 1 for the eye alone.
     pub sizes: usize,
     /// Neurons along each side of the maps of arm and hand; 21. Those of the arm extend two neurons
     /// beyond each joint limit.
@@ -85,7 +85,7 @@ impl Default for ChainBrain {
             variant: ChainName::Chain,
             rule: Rule::Outstar(OutstarRule::default()),
             eye_neurons: 31,
-            sizes: 5,
+            sizes: 3,
             neurons: 21,
             sigma: 0.7,
             babble: Sequence::default(),

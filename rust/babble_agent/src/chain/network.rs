@@ -10,7 +10,7 @@ use super::acting::ChainPolicy;
 use super::brain::ChainBrain;
 use super::code::{Input, arm, hand};
 use super::practice;
-use super::route::{RouteChoice, Routes};
+use super::route::{RouteChoice, Routes, State};
 use crate::error::AgentError;
 use crate::grasp::{Experience, GraspBabbling};
 use crate::learner::ROUND;
@@ -120,15 +120,15 @@ impl Network for ChainNetwork {
         ])
     }
 
-    /// (size, tilt, pan) three times, or (tilt, pan); then the routes' (elbow before the grasp, elbow,
-    /// turn of the shoulder) twice.
+    /// (size, tilt, pan) three times, or (tilt, pan); then the neurons of the routes' three maps, one after
+    /// the other, twice.
     fn input_shapes(&self) -> Vec<Vec<usize>> {
         let eye = self.config.eye_neurons;
         let seen = match self.config.sizes {
             1 => vec![eye, eye],
             sizes => vec![sizes, eye, eye],
         };
-        let routes = self.routes.shape();
+        let routes = vec![self.routes.inputs()];
         vec![seen.clone(), seen.clone(), seen, routes.clone(), routes]
     }
 
@@ -199,9 +199,8 @@ impl Network for ChainNetwork {
         executor: &mut Executor,
     ) -> Result<u64, AgentError> {
         let trials = practice::trials(self, task, seed, first, ROUND, executor)?;
-        for trial in &trials {
-            self.routes.learn(&trial.choice, trial.reward())?;
-        }
+        let rewards = trials.iter().map(|trial| (trial.choice, trial.reward()));
+        self.routes.learn(&rewards.collect::<Vec<_>>())?;
         Ok(trials.iter().map(|trial| u64::from(trial.steps)).sum())
     }
 }
@@ -248,7 +247,7 @@ impl ChainNetwork {
 
     /// The route that promises most.
     #[must_use]
-    pub fn best_route(&self, state: [f64; 3]) -> RouteChoice {
+    pub fn best_route(&self, state: &State) -> RouteChoice {
         self.routes.best(state)
     }
 }

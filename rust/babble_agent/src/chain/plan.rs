@@ -27,6 +27,8 @@ pub(super) struct Targets {
     pub pregrasp: [f64; 2],
     pub contact: [f64; 2],
     pub hand: [f64; 2],
+    /// Recalled flexion of the fingers around the object, over 90°.
+    pub grip: f64,
 }
 
 /// A chain under way.

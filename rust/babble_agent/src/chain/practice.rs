@@ -9,13 +9,13 @@ use babble_env::{
 
 use super::acting::ChainPolicy;
 use super::network::ChainNetwork;
-use super::route::RouteChoice;
+use super::route::{RouteChoice, State};
 use crate::error::AgentError;
 use crate::policy::{Plan, Policy};
 
 /// Control steps in which a reward loses 63 % of its worth: of two ways that hold, the shorter is
 /// better.
-const PATIENCE: f64 = 2_000.0;
+const PATIENCE: f64 = 1_500.0;
 
 /// A trial.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,7 +82,7 @@ fn trial(
     episode.begin(task, next);
     let mut senses = vec![0.0; SENSES];
     episode.observe(task, &mut senses);
-    let choose = |state| network.routes().sample(state, &mut choices);
+    let choose = |state: &State| network.routes().sample(state, &mut choices);
     let begun = policy.begin(&senses, choose)?;
     let (choice, mut plan) = (begun.choice, Plan::Chain(begun));
     let mut action = [0.0; 4];

@@ -12,17 +12,27 @@ const FOLD: [f64; 3] = [0.45, 0.7, 1.0];
 /// How far it extends again, likewise.
 const EXTEND: [f64; 4] = [0.0, 0.3, 0.6, 0.9];
 
-/// Neurons for the turn of the shoulder ahead, the elbow, and the elbow before the grasp.
-const NEURONS: [usize; 3] = [21, 6, 6];
+/// Neurons for the turn of the shoulder ahead, the elbow, and the elbow before the grasp: what decides
+/// whether the arm gets there straight.
+const STRAIGHT: [usize; 3] = [21, 6, 6];
+/// Neurons for the turn of the shoulder ahead, and shoulder and elbow before the grasp: what decides which
+/// detour leads there.
+const AROUND: [usize; 3] = [7, 9, 6];
+/// Neurons for the flexion of the fingers around the object.
+const SIZES: usize = 7;
 /// Width of the tuning curves in spacings of neurons.
 const SIGMA: f64 = 0.7;
-/// Trials that an untried route counts for, with no reward.
-const DOUBT: f64 = 1.0;
+/// Trials that count for a detour in a state where it was not tried: what it brought elsewhere for objects
+/// of this size.
+const DOUBT: f64 = 3.0;
 /// Spread of the rewards of one route, which says how far a route that was tried n times may be better
 /// than it seems: the spread / √n.
 const SPREAD: f64 = 0.4;
-/// Reward that an untried route is imagined to bring while practising.
+/// Reward that a route tried nowhere is imagined to bring, in one trial.
 const HOPE: f64 = 0.5;
+/// Share of practice in which the arm goes straight whatever it promises: its worth in a state is not that
+/// elsewhere, so that it has to be tried everywhere.
+const STRAIGHT_SHARE: f64 = 0.3;
 
 /// A way around an object: fold the elbow, turn the shoulder, extend the elbow.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,20 +45,41 @@ pub struct Detour {
     pub extend: f64,
 }
 
+/// What a route is chosen for: where the arm is, and where it has to go. All are shares of a range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State {
+    /// The turn of the shoulder ahead: the difference vector of Bullock & Grossberg (1988).
+    pub turn: f64,
+    /// The elbow as it is.
+    pub elbow: f64,
+    /// Shoulder and elbow before the grasp.
+    pub pregrasp: [f64; 2],
+    /// Recalled flexion of the fingers around the object.
+    pub grip: f64,
+}
+
 /// A route and what it was chosen for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RouteChoice {
     /// Its number; 0 goes straight.
     pub number: usize,
-    /// The turn of the shoulder ahead, the elbow, and the elbow before the grasp, as shares of their
-    /// ranges.
-    pub state: [f64; 3],
+    /// What it was chosen for.
+    pub state: State,
+}
+
+impl RouteChoice {
+    fn new(number: usize, state: &State) -> Self {
+        let state = *state;
+        Self { number, state }
+    }
 }
 
 /// The values of the routes, learnt by reward.
 #[derive(Debug, Clone)]
 pub struct Routes {
-    map: PopulationMap,
+    straight: PopulationMap,
+    around: PopulationMap,
+    size: PopulationMap,
     /// Mean reward of each route at each input neuron.
     pub(super) value: Association,
     /// How often each was tried there.
@@ -61,17 +92,29 @@ impl Routes {
     /// # Errors
     /// [`AgentError::Brain`] never, as the numbers are constants.
     pub fn new() -> Result<Self, AgentError> {
-        let map = PopulationMap::new(&MapConfig {
-            neurons: NEURONS.into(),
-            low: vec![-1.0, 0.0, 0.0],
-            high: vec![1.0, 1.0, 1.0],
+        let state = |neurons: [usize; 3]| {
+            PopulationMap::new(&MapConfig {
+                neurons: neurons.into(),
+                low: vec![-1.0, 0.0, 0.0],
+                high: vec![1.0, 1.0, 1.0],
+                sigma: SIGMA,
+            })
+        };
+        let (straight, around) = (state(STRAIGHT)?, state(AROUND)?);
+        let size = PopulationMap::new(&MapConfig {
+            neurons: vec![SIZES],
+            low: vec![0.0],
+            high: vec![1.0],
             sigma: SIGMA,
         })?;
-        let connections = || Association::new(map.len(), Self::count());
+        let connections =
+            || Association::new(straight.len() + around.len() + size.len(), Self::count());
         Ok(Self {
             value: connections()?,
             tried: connections()?,
-            map,
+            straight,
+            around,
+            size,
         })
     }
 
@@ -92,72 +135,103 @@ impl Routes {
         })
     }
 
-    /// Neurons along the axes of the input map, the last axis fastest.
+    /// Input neurons of the three maps.
     #[must_use]
-    pub fn shape(&self) -> Vec<usize> {
-        NEURONS.iter().rev().copied().collect()
+    pub fn inputs(&self) -> usize {
+        self.straight.len() + self.around.len() + self.size.len()
     }
 
     /// Rewards that the routes have brought in states like this one, summed, and trials they count for.
-    fn evidence(&self, state: [f64; 3]) -> Vec<[f64; 2]> {
-        let g = self.encode(state);
-        let square: f64 = g.iter().map(|&(_, g)| g * g).sum();
-        let (value, tried) = (self.value.weights(), self.tried.weights());
+    /// What they brought elsewhere for objects of this size counts for a few trials.
+    fn evidence(&self, state: &State) -> Vec<[f64; 2]> {
+        let [straight, around, size] = self.encode(state);
         (0..Self::count())
-            .map(|j| {
-                let (mut reward, mut trials) = (0.0, 0.0);
-                for &(i, g) in &g {
-                    let at = j * self.map.len() + i;
-                    let used = g * f64::from(tried[at]) / square;
-                    trials += used;
-                    reward += used * f64::from(value[at]);
+            .map(|route| {
+                if route == 0 {
+                    let [reward, trials] = self.brought(route, &straight);
+                    return [reward + HOPE, trials + 1.0];
                 }
-                [reward, trials]
+                let [reward, trials] = self.brought(route, &size);
+                let elsewhere = (reward + HOPE) / (trials + 1.0);
+                let [reward, trials] = self.brought(route, &around);
+                [reward + DOUBT * elsewhere, trials + DOUBT]
             })
             .collect()
     }
 
-    /// The active neurons.
-    fn encode(&self, state: [f64; 3]) -> Vec<(usize, f64)> {
-        let mut g = vec![0.0; self.map.len()];
-        // The lengths fit.
-        let encoded = self.map.encode(&state, &mut g);
-        debug_assert!(encoded.is_ok());
-        let active = g.iter().enumerate().filter(|&(_, &g)| g > 1e-3);
-        active.map(|(i, &g)| (i, f64::from(g))).collect()
+    /// Rewards of a route at active neurons, summed, and its trials there.
+    fn brought(&self, route: usize, active: &[(usize, f64)]) -> [f64; 2] {
+        let square: f64 = active.iter().map(|&(_, g)| g * g).sum();
+        let (value, tried) = (self.value.weights(), self.tried.weights());
+        let mut sum = [0.0; 2];
+        for &(i, g) in active {
+            let at = route * self.inputs() + i;
+            let trials = g * f64::from(tried[at]) / square;
+            sum[0] += trials * f64::from(value[at]);
+            sum[1] += trials;
+        }
+        sum
+    }
+
+    /// The active neurons of the three maps.
+    fn encode(&self, state: &State) -> [Vec<(usize, f64)>; 3] {
+        let active = |map: &PopulationMap, x: &[f64], first: usize| {
+            let mut g = vec![0.0; map.len()];
+            // The lengths fit.
+            let encoded = map.encode(x, &mut g);
+            debug_assert!(encoded.is_ok());
+            let active = g.iter().enumerate().filter(|&(_, &g)| g > 1e-3);
+            active.map(|(i, &g)| (first + i, f64::from(g))).collect()
+        };
+        let State {
+            turn,
+            elbow,
+            pregrasp: [shoulder, before],
+            grip,
+        } = *state;
+        let (straight, around) = (self.straight.len(), self.around.len());
+        [
+            active(&self.straight, &[turn, elbow, before], 0),
+            active(&self.around, &[turn, shoulder, before], straight),
+            active(&self.size, &[grip], straight + around),
+        ]
     }
 
     /// The route that promises most.
     #[must_use]
-    pub fn best(&self, state: [f64; 3]) -> RouteChoice {
-        let worth = |[reward, trials]: [f64; 2]| reward / (trials + DOUBT);
+    pub fn best(&self, state: &State) -> RouteChoice {
+        let worth = |[reward, trials]: [f64; 2]| reward / trials;
         let number = strongest(self.evidence(state).into_iter().map(worth));
-        RouteChoice { number, state }
+        RouteChoice::new(number, state)
     }
 
     /// A route to try: the best of what each may be worth, sampled from what is known of it (Thompson
     /// 1933).
     #[must_use]
-    pub fn sample(&self, state: [f64; 3], stream: &mut Stream) -> RouteChoice {
+    pub fn sample(&self, state: &State, stream: &mut Stream) -> RouteChoice {
+        if stream.uniform(0.0, 1.0) < STRAIGHT_SHARE {
+            return RouteChoice::new(0, state);
+        }
         let sampled = self.evidence(state).into_iter().map(|[reward, trials]| {
-            let mean = (reward + HOPE * DOUBT) / (trials + DOUBT);
-            mean + SPREAD * gaussian(stream) / libm::sqrt(trials + DOUBT)
+            reward / trials + SPREAD * gaussian(stream) / libm::sqrt(trials)
         });
         let number = strongest(sampled);
-        RouteChoice { number, state }
+        RouteChoice::new(number, state)
     }
 
-    /// Learns from the reward R of a trial: Δw = η g a (R − w), where a is 1 for the route taken and 0
+    /// Learns from the rewards R of trials: Δw = η g a (R − w), where a is 1 for the route taken and 0
     /// for the others, and η = 1 / use of the synapse.
     ///
     /// # Errors
     /// [`AgentError::Brain`] never, as the weights stay finite.
-    pub fn learn(&mut self, choice: &RouteChoice, reward: f64) -> Result<(), AgentError> {
+    pub fn learn(&mut self, trials: &[(RouteChoice, f64)]) -> Result<(), AgentError> {
         let (mut value, mut tried) = (self.value.weights().to_vec(), self.tried.weights().to_vec());
-        for (i, g) in self.encode(choice.state) {
-            let at = choice.number * self.map.len() + i;
-            tried[at] += g as f32;
-            value[at] += g as f32 / tried[at] * (reward as f32 - value[at]);
+        for (choice, reward) in trials {
+            for (i, g) in self.encode(&choice.state).concat() {
+                let (at, g) = (choice.number * self.inputs() + i, g as f32);
+                tried[at] += g;
+                value[at] += g / tried[at] * (*reward as f32 - value[at]);
+            }
         }
         self.value.set_weights(&value)?;
         Ok(self.tried.set_weights(&tried)?)

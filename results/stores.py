@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from statistics import fmean
 from typing import Any
 
 from gym_babble.study.rates import paper_tally
@@ -104,9 +105,16 @@ def derived(stores: Stores) -> dict[str, float]:
     changed = {row["change"]: row["success"] for row in stores["sensitivity"]["rows"]}
     none = changed.pop("none")
     del changed["camera frame fick"]
+    held: dict[tuple[int, float], list[float]] = {}
+    for row in stores["chain"]["paper"]:
+        if not row["practised"]:
+            held.setdefault((row["learnt"], row["diameter_cm"]), []).append(row["kept"])
     voted = {choice: found["success"] for choice, found in stores["vote"]["rows"].items()}
     (fine,) = (row["success"] for row in stores["readouts"]["fine"] if row["readout"] == "peak")
     return {
+        "chain_small": fmean(held[1_000, 2.4]),
+        "chain_small_100": fmean(held[100, 2.4]),
+        "chain_unseen": fmean(held[1_000, 4.0]),
         "above_paper": ours - paper_tally()["success"]["rate"],
         "inside_big_cm": -stores["interference"]["rows"][5]["mean"][0],
         "missed": 100 * (1 - voted["hebb"]),

@@ -33,7 +33,7 @@ def test_it_holds_objects_at_their_goals(agent):
     held, off = at_end(agent, list(scenarios("palm_side", 30, 1_000, goal=True)))
     assert held.mean() >= 0.7
     assert (held & (off <= 0.02)).mean() >= 0.7
-    assert np.median(off[held]) < 0.01
+    assert np.median(off[held]) < 0.015
 
 
 def test_the_same_weights_grasp_and_carry(tmp_path, agent):

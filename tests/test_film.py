@@ -168,13 +168,14 @@ def test_a_panel_says_what_happens_at_each_moment():
 
 def test_a_map_shows_its_neurons_in_their_places(learnt):
     pictures = AgentMaps(learnt).pictures(first_observation(learnt))
+    sizes = learnt.brain.get("sizes", 0)
     for sees, weights, recalls in pictures:
         assert (sees.title, recalls.title) in {
             ("obstacle", "movement"),
             ("target, obstacle", "movement"),
             ("eye", "arm"),
             ("fovea", "hand"),
-            *((f"eye, size {k} of 5", name) for k in range(1, 6) for name in CHAIN),
+            *((f"eye, size {k + 1} of {sizes}", name) for k in range(sizes) for name in CHAIN),
         }
         assert weights.title == ("weights in" if sees.title == "fovea" else "weights out")
         for picture in (sees, weights, recalls):

@@ -45,6 +45,7 @@ pictures: setup ## Draw the pictures of README and docs again, without those of 
 	$(BIN)/python examples/grasp_basin.py --figure $(PICTURES)/basin.png
 	for figure in fig2 fig4 fig5 fig7 fig8 sight; do \
 		$(BIN)/gym-babble reproduce $$figure --out $(PICTURES)/$$figure.png || exit 1; done
+	$(BIN)/python -m results.changed_body
 
 test: test-rust test-python ## Run the Rust and the Python tests
 

@@ -18,13 +18,14 @@ from gym_babble.sb3 import BabbleVecEnv
 from gym_babble.study.trainers.sb3 import train_tuned
 
 parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("--agents", nargs="+", help="some of the agents by name; all if not given")
+parser.add_argument("--changes", nargs="+", help="some of the changes by name; all if not given")
 parser.add_argument("--movements", type=int, default=20_000, help="legal movements before")
 parser.add_argument("--repair", type=int, nargs="+", default=[250, 1_000, 4_000], help="and after")
-parser.add_argument("--ppo", type=int, default=16_384, help="PPO's movements before; 0 for no PPO")
-parser.add_argument("--ppo-repair", type=int, nargs="+", default=[1_024, 4_096], help="and after")
+parser.add_argument("--ppo", type=int, default=16_384, help="PPO's movements before")
+parser.add_argument("--ppo-repair", type=int, nargs="+", default=[1_024, 4_096, 16_384])
 parser.add_argument("--seeds", type=int, default=3, help="seeds of learning, from 20 on")
-parser.add_argument("--tests", type=int, default=1_000, help="cases, of seed 1,000")
-parser.add_argument("--changes", nargs="+", help="some of the changes by name; all if not given")
+parser.add_argument("--tests", type=int, default=1_000, help="cases of each seed, from 1,000 on")
 parser.add_argument("--json", action="store_true", help="print one JSON document")
 arguments = parser.parse_args()
 
@@ -41,26 +42,25 @@ CHANGES: dict[str, dict[str, Any]] = {
     "noise of muscles": {"noise": {"motor_deg": 10.0}},
 }
 CHOSEN = {name: CHANGES[name] for name in arguments.changes or CHANGES}
-BRAINS: dict[str, tuple[str, dict[str, Any]]] = {
-    "Hebb `paper`": ("paper", {}),
-    "Hebb `conjunctive`": ("conjunctive", {}),
-}
-TESTS = {name: scenarios("table1", arguments.tests, 1_000, config=c) for name, c in CHOSEN.items()}
+VARIANTS = {"Hebb `paper`": "paper", "Hebb `conjunctive`": "conjunctive"}
+States = Iterator[tuple[str, int | None, Any]]
+"""The change, movements learnt in the changed body, and the agent; None for one that learnt there
+alone, as many movements as the others before the change."""
 
 
-def hebb(name: str, seed: int) -> Iterator[tuple[str, int, Any]]:
-    """A Hebb agent in each changed body: the change, movements learnt there, and the agent."""
-    variant, brain = BRAINS[name]
-    agent = HebbBabbling(PATTERN, variant, seed=seed, brain=brain).learn(arguments.movements)
+def hebb(variant: str, seed: int) -> States:
+    """A Hebb agent in each changed body; its legal movements count."""
+    agent = HebbBabbling(PATTERN, variant, seed=seed).learn(arguments.movements)
     for change, config in CHOSEN.items():
-        moved = agent.continue_in(gym.make(PATTERN, config=config))
+        env = gym.make(PATTERN, config=config)
+        moved = agent.continue_in(env)
         yield change, 0, moved
         for movements in sorted(arguments.repair):
-            moved.learn(movements - (moved.learnt - agent.learnt))
-            yield change, movements, moved
+            yield change, movements, moved.learn(movements - (moved.learnt - agent.learnt))
+        yield change, None, HebbBabbling(env, variant, seed=seed).learn(arguments.movements)
 
 
-def ppo(seed: int) -> Iterator[tuple[str, int, Any]]:
+def ppo(seed: int) -> States:
     """PPO in the same way; all its movements count, legal or not."""
     model, stored = train_tuned("ppo", PATTERN, seed=seed, steps=arguments.ppo), BytesIO()
     model.save(stored)
@@ -77,21 +77,23 @@ def ppo(seed: int) -> Iterator[tuple[str, int, Any]]:
             done = movements
             yield change, movements, moved
         env.close()
+        there = train_tuned("ppo", PATTERN, seed=seed, steps=arguments.ppo, config=config)
+        yield change, None, there
 
 
-def tested(change: str, agent: Any) -> float:
-    """Success in a changed body."""
-    return evaluate(agent, PATTERN, TESTS[change], config=CHOSEN[change]).rate("success")
+def success(change: str, agent: Any, seed: int) -> float:
+    """Success in a changed body, on cases of a seed."""
+    cases = scenarios("table1", arguments.tests, seed, config=CHOSEN[change])
+    return evaluate(agent, PATTERN, cases, config=CHOSEN[change]).rate("success")
 
 
-found: dict[tuple[str, str, int], list[float]] = {}
-for seed in range(20, 20 + arguments.seeds):
-    agents = [(name, hebb(name, seed)) for name in BRAINS]
-    if arguments.ppo:
-        agents.append(("PPO", ppo(seed)))
-    for name, states in agents:
+found: dict[tuple[str, str, int | None], list[float]] = {}
+for name in arguments.agents or (*VARIANTS, "PPO"):
+    for k in range(arguments.seeds):
+        states = ppo(20 + k) if name == "PPO" else hebb(VARIANTS[name], 20 + k)
         for change, movements, agent in states:
-            found.setdefault((name, change, movements), []).append(tested(change, agent))
+            rate = success(change, agent, 1_000 + k)
+            found.setdefault((name, change, movements), []).append(rate)
 rows = [
     {
         "agent": name,
@@ -107,5 +109,5 @@ if arguments.json:
 else:
     for row in rows:
         each = ", ".join(f"{rate:.3f}" for rate in row["by_seed"])
-        named = f"| {row['agent']} | {row['change']} | {row['movements']:,} |"
-        print(f"{named} {row['success']:.3f} | {each} |")
+        after = "there alone" if row["movements"] is None else f"{row['movements']:,}"
+        print(f"| {row['agent']} | {row['change']} | {after} | {row['success']:.3f} | {each} |")

@@ -154,16 +154,16 @@ def _with_span(rates: list[float]) -> str:
 
 def changed_body(stores: Stores) -> str:
     """How far agents fall in a changed body, and after how much learning they are back."""
-    found = stores["changed_body"]["hebb"]
-    rates = {(row["agent"], row["change"], row["movements"]): row["success"] for row in found}
-    agents, changes, budgets = (list(dict.fromkeys(part)) for part in zip(*rates, strict=True))
-    rows = [
-        [agent, change, *(share(rates[agent, change, budget]) for budget in budgets)]
-        for agent in agents
-        for change in changes
-    ]
-    later = [f"after {budget:,} movements more" for budget in budgets[1:]]
-    return markdown(["agent", "change", "at once", *later], rows)
+    rates: dict[tuple[str, str], dict[int | None, str]] = {}
+    for row in (row for run in stores["changed_body"].values() for row in run):
+        which = row["agent"], row["change"]
+        rates.setdefault(which, {})[row["movements"]] = share(row["success"])
+    rows = []
+    for which, found in rates.items():
+        at_once, alone = found.pop(0), found.pop(None)
+        later = [f"{rate} after {budget:,}" for budget, rate in found.items()]
+        rows.append([*which, at_once, ", ".join(later), alone])
+    return markdown(["agent", "change", "at once", "after learning on", "learnt there alone"], rows)
 
 
 def periods(stores: Stores) -> str:

@@ -21,6 +21,7 @@ GRASPING = "--env-id BabbleGrasp-v0"
 READOUTS = "python examples/readouts.py"
 INPUTS = '"obstacle, Eq. 7" "obstacle, Hebb" "eye, Eq. 7" "eye, Hebb"'
 PAIRS = '"obstacle x eye, Eq. 7" "obstacle x eye, Hebb"'
+CHANGED_BODY = "python examples/changed_body.py"
 SOLVED = ("BabbleReachGoal-v0", "BabbleGrasp-v0")
 
 STORES: dict[str, dict[str, str]] = {
@@ -57,9 +58,10 @@ STORES: dict[str, dict[str, str]] = {
         "fine": f'{READOUTS} --bodies paper --movements 20000 --networks "fine obstacle, Hebb"',
     },
     "changed_body": {
-        "hebb": "python examples/changed_body.py --ppo 0 --movements 2000 --repair 250 1000 "
-        '--seeds 1 --tests 500 --changes none "elbow to 100°" "forearm + 3 cm" '
-        '"half the stiffness" "eye 4 cm to the right" "noise of senses" "noise of muscles"',
+        "conjunctive": f'{CHANGED_BODY} --movements 4000 --seeds 1 --agents "Hebb `conjunctive`"',
+        "paper": f'{CHANGED_BODY} --movements 4000 --seeds 1 --agents "Hebb `paper`"',
+        "ppo": f"{CHANGED_BODY} --agents PPO --seeds 1 --ppo-repair 1024 4096 --changes none "
+        '"elbow to 85°" "a fifth of the stiffness" "eye 4 cm to the right"',
     },
     "fig4": {"paper": "gym-babble reproduce fig4"},
     "fig5": {"paper": "gym-babble reproduce fig5"},

@@ -1,4 +1,4 @@
-"""What docs/model.md says of reaching's readouts, in a small form.
+"""What docs/model.md says of reaching's readouts and of noise, in a small form.
 
 Learning seeds and cases differ from the stored ones.
 """
@@ -52,3 +52,14 @@ def test_an_agent_of_few_movements(stored, body):
     error = spread * math.sqrt(1 / len(SEEDS) + 1 / len(known))
     assert fmean(rates["early"]) == pytest.approx(mean, abs=3.5 * error)
     assert fmean(rates["early"]) > fmean(rates["default"])
+
+
+def test_noise_of_muscles_costs_what_is_stored(stored):
+    """Success without and with it, of an agent of fewer movements than the stored ones."""
+    rows = stored["changed_body"]["conjunctive"]
+    agent = HebbBabbling(PATTERN, "conjunctive", seed=40, brain=EARLY).learn(250)
+    for change, config in (("none", {}), ("noise of muscles", {"noise": {"motor_deg": 10.0}})):
+        known = of(rows, change=change, movements=0)["success"]
+        # More movements make an agent better by a few hundredths, with noise or without.
+        there = agent.continue_in(gym.make(PATTERN, config=config))
+        assert success(there, 2_000, config) == pytest.approx(known, abs=0.08), change

@@ -21,6 +21,7 @@ mod outcome;
 pub mod picture;
 pub mod progress;
 pub mod registry;
+pub mod seeding;
 pub mod snapshot;
 pub mod spec;
 pub mod stream;

@@ -1,0 +1,6 @@
+#![doc = include_str!("../README.md")]
+
+pub mod fault;
+pub mod limits;
+pub mod session;
+pub mod wire;

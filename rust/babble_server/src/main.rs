@@ -1,0 +1,3 @@
+//! The environment server.
+
+fn main() {}

@@ -6,9 +6,12 @@
 //! are MessagePack binaries: little-endian, row after row, without a header, as their shape follows from
 //! the reply to `make`.
 //!
-//! Ids are whole numbers that grow by one from 1 in a session. A request whose id was the last one to be
-//! executed is not executed again: it gets the same reply. So a client that lost its connection resumes
-//! its session and sends the request again of which it saw no reply.
+//! A connection begins with `make` or `resume`, whose id is 0; after an error it may try again. The
+//! requests that follow have ids that grow by one from 1 in a session, also after an error. A request
+//! whose id was the last one to be executed is not executed again: it gets the same reply. So a client
+//! that lost its connection resumes its session and sends the request again of which it saw no reply. Any
+//! other id is an error, and so is a message whose id cannot be read, which is answered with nil in place
+//! of the id; neither counts. After `close` the server ends the connection with code 1000.
 
 use std::collections::BTreeMap;
 

@@ -1,0 +1,86 @@
+//! What all connections share.
+
+use std::net::IpAddr;
+use std::sync::Arc;
+
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
+
+use crate::admission::{Admission, Admissions};
+use crate::fault::{Fault, Kind};
+use crate::limits::Limits;
+use crate::options::Options;
+use crate::session::Session;
+use crate::table::SessionTable;
+use crate::wire::Make;
+
+/// Connections beyond those of sessions: for pages, checks of health, and handshakes.
+const SPARE_CONNECTIONS: usize = 64;
+
+/// What all connections share.
+#[derive(Debug)]
+pub struct Server {
+    /// How it was started.
+    pub options: Options,
+    /// All sessions.
+    pub admissions: Arc<Admissions>,
+    /// Sessions of the binary protocol.
+    pub table: SessionTable,
+    /// Connections that may still be accepted.
+    pub connections: Arc<Semaphore>,
+    /// True once the server is being stopped.
+    pub draining: watch::Sender<bool>,
+}
+
+/// The other end of a connection.
+#[derive(Debug, Clone)]
+pub struct Peer {
+    /// Its address.
+    pub address: IpAddr,
+    /// Held while the connection lasts.
+    pub permit: Arc<OwnedSemaphorePermit>,
+}
+
+/// Waits until a watched value is as asked.
+pub(crate) async fn told<T>(watched: &mut watch::Receiver<T>, asked: impl FnMut(&T) -> bool) {
+    // If the sender is gone the value will not change: whoever holds it ends all that wait.
+    if watched.wait_for(asked).await.is_err() {
+        std::future::pending::<()>().await;
+    }
+}
+
+impl Server {
+    /// A server with no sessions.
+    #[must_use]
+    pub fn new(options: Options) -> Self {
+        let limits = &options.limits;
+        let connections = limits.sessions.saturating_add(SPARE_CONNECTIONS);
+        Self {
+            admissions: Arc::new(Admissions::new(limits)),
+            table: SessionTable::default(),
+            connections: Arc::new(Semaphore::new(connections.min(Semaphore::MAX_PERMITS))),
+            draining: watch::Sender::new(false),
+            options,
+        }
+    }
+
+    /// What clients may ask for.
+    #[must_use]
+    pub const fn limits(&self) -> &Limits {
+        &self.options.limits
+    }
+
+    /// Begins a session. It takes time: call it in a thread for long work.
+    ///
+    /// # Errors
+    /// [`Fault`] for what is refused or beyond a limit.
+    pub fn open(&self, client: IpAddr, asked: &Make) -> Result<(Session, Admission), Fault> {
+        if *self.draining.borrow() {
+            let message = "the server is being stopped and begins no session";
+            return Err(Fault::new(Kind::SessionError, message));
+        }
+        let mut admission = self.admissions.admit(client, &asked.env, asked.num_envs)?;
+        let session = Session::make(asked, self.limits(), admission.threads())?;
+        admission.keep_threads(session.threads());
+        Ok((session, admission))
+    }
+}

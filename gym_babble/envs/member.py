@@ -40,9 +40,9 @@ class BatchMember:
         self.attributes: dict[str, Any] = {}
         """What `set_attr` of the batch set."""
 
-    def seed(self, seed: int, stream: int) -> None:
+    def seed(self, seed: int) -> None:
         """Starts the stream of cases anew."""
-        self._batch.seed(self._i, stream)
+        self._batch.seed(self._i, seed)
         self.np_random_seed = seed
 
     def get_state(self) -> bytes:
@@ -141,5 +141,4 @@ class BatchMember:
 
     def retina(self) -> NDArray[np.uint8]:
         """The eye's image in obs="retina"."""
-        size = self._interface.retina_size
-        return self._batch.render(self._i, "eye", size, size)
+        return self._batch.retina(self._i, self._interface.retina_size)

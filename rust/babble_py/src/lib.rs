@@ -25,7 +25,7 @@ use pyo3::prelude::*;
 #[pymodule(gil_used = false)]
 mod _core {
     #[pymodule_export]
-    use crate::batch::Batch;
+    use crate::batch::{Batch, stream_seed};
     #[pymodule_export]
     use crate::brain::{
         Association, ConjunctiveMap, PopulationMap, generator_curve, place_curve, rule_json,

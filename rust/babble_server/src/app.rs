@@ -5,6 +5,8 @@ use std::sync::Arc;
 use axum::extract::ws::WebSocketUpgrade;
 use axum::extract::{Extension, State};
 use axum::http::StatusCode;
+use axum::http::header::CONTENT_TYPE;
+use axum::middleware::from_fn_with_state;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use axum::{Router, body};
@@ -13,6 +15,7 @@ use crate::binary;
 use crate::connection::Connection;
 use crate::server::{Peer, Server};
 use crate::wire::SUBPROTOCOL;
+use crate::{gate, page};
 
 /// Bytes that are read at once: most messages are shorter.
 const READ_BUFFER: usize = 16 << 10;
@@ -20,8 +23,19 @@ const READ_BUFFER: usize = 16 << 10;
 /// All routes.
 pub(crate) fn routes(server: Arc<Server>) -> Router {
     Router::new()
+        .route("/", get(page::status))
+        .route("/status.css", get(page::style))
+        .route("/metrics", get(metrics))
         .route("/ws", get(web_socket))
+        .layer(from_fn_with_state(Arc::clone(&server), gate::check))
         .with_state(server)
+}
+
+/// For Prometheus.
+async fn metrics(State(server): State<Arc<Server>>) -> impl IntoResponse {
+    let text = server.metrics.text(server.admissions.counts());
+    let kind = "application/openmetrics-text; version=1.0.0; charset=utf-8";
+    ([(CONTENT_TYPE, kind)], text)
 }
 
 /// The binary protocol for clients that ask for its subprotocol.

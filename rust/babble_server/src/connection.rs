@@ -11,7 +11,7 @@ use tokio::time::{Interval, MissedTickBehavior, interval_at, timeout};
 use crate::server::{Peer, Server, told};
 
 /// Pings without an answer after which a client counts as gone.
-const UNANSWERED: u32 = 2;
+pub(crate) const UNANSWERED: u32 = 2;
 
 /// Why a connection ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,6 +44,21 @@ pub struct Connection {
     draining: watch::Receiver<bool>,
     /// A message that came during long work.
     pending: Option<Message>,
+}
+
+impl End {
+    /// Its name in counters and the log.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Closed => "closed",
+            Self::TooLong => "message too long",
+            Self::Dead => "no answer",
+            Self::Idle => "idle",
+            Self::TakenOver => "resumed elsewhere",
+            Self::Draining => "server stopped",
+        }
+    }
 }
 
 impl Connection {

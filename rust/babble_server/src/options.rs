@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::gate;
 use crate::limits::{Limits, seconds};
 
 /// The environments of gym-babble over a network.
@@ -40,7 +41,7 @@ pub struct Options {
     #[arg(long)]
     pub token_file: Option<PathBuf>,
     /// Origin of pages that may connect, as in `https://example.org`; may be repeated.
-    #[arg(long)]
+    #[arg(long, value_parser = gate::origin)]
     pub allow_origin: Vec<String>,
     /// How long running requests may take to end when the server is stopped.
     #[arg(long = "drain-seconds", default_value = "30", value_parser = seconds)]

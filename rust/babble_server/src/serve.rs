@@ -4,6 +4,7 @@ use std::convert::Infallible;
 use std::io;
 use std::net::SocketAddr;
 use std::sync::Arc;
+use std::time::Duration;
 
 use axum::Router;
 use axum::body::Body;
@@ -12,10 +13,11 @@ use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use tokio::net::{TcpListener, TcpStream};
-use tokio::time::timeout;
+use tokio::time::{interval, sleep, timeout};
 use tower::ServiceExt;
 
 use crate::app;
+use crate::connection::UNANSWERED;
 use crate::options::Options;
 use crate::server::{Peer, Server, told};
 
@@ -24,10 +26,12 @@ use crate::server::{Peer, Server, told};
 /// # Errors
 /// An address that cannot be listened on.
 pub(crate) async fn serve(options: Options) -> io::Result<()> {
+    let server = Arc::new(Server::new(options)?);
+    let options = &server.options;
     let listener = TcpListener::bind(SocketAddr::new(options.host, options.port)).await?;
     println!("listening on {}", listener.local_addr()?);
-    let server = Arc::new(Server::new(options));
     let app = app::routes(Arc::clone(&server));
+    let sampler = tokio::spawn(sample(Arc::clone(&server)));
     let stop = asked_to_stop()?;
     tokio::pin!(stop);
     loop {
@@ -39,22 +43,29 @@ pub(crate) async fn serve(options: Options) -> io::Result<()> {
                 // Out of descriptors, or a connection that broke at once: go on.
                 Err(error) => {
                     tracing::warn!(%error, "cannot accept a connection");
-                    tokio::time::sleep(std::time::Duration::from_millis(50)).await;
+                    sleep(Duration::from_millis(50)).await;
                 }
             },
             () = &mut stop => break,
         }
     }
     drop(listener);
-    tracing::info!("stopping");
+    sampler.abort();
+    let (sessions, _) = server.admissions.counts();
+    tracing::info!(sessions, "stopping");
     server.draining.send_replace(true);
-    let all = server.limits().sessions.saturating_add(64) as u32;
-    let _ = timeout(
-        server.options.drain_time,
-        server.connections.acquire_many(all),
-    )
-    .await;
+    let drained = timeout(options.drain_time, server.drained()).await.is_ok();
+    tracing::info!(drained, "stopped");
     Ok(())
+}
+
+/// Keeps the counters of each second, for the rates of the status page.
+async fn sample(server: Arc<Server>) {
+    let mut second = interval(Duration::from_secs(1));
+    loop {
+        second.tick().await;
+        server.metrics.sample();
+    }
 }
 
 async fn accept(listener: &TcpListener, server: &Server) -> io::Result<(TcpStream, Peer)> {
@@ -62,6 +73,10 @@ async fn accept(listener: &TcpListener, server: &Server) -> io::Result<(TcpStrea
     let permit = permit.map_err(io::Error::other)?;
     let (stream, address) = listener.accept().await?;
     stream.set_nodelay(true)?;
+    // A client that takes none of what is sent to it is dropped by the system, where it can.
+    #[cfg(target_os = "linux")]
+    socket2::SockRef::from(&stream)
+        .set_tcp_user_timeout(Some(UNANSWERED * server.limits().ping_time))?;
     let peer = Peer {
         address: address.ip().to_canonical(),
         permit: Arc::new(permit),

@@ -1,5 +1,6 @@
 //! What all connections share.
 
+use std::io;
 use std::net::IpAddr;
 use std::sync::Arc;
 
@@ -7,14 +8,16 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
 
 use crate::admission::{Admission, Admissions};
 use crate::fault::{Fault, Kind};
+use crate::gate::Token;
 use crate::limits::Limits;
+use crate::metrics::Metrics;
 use crate::options::Options;
 use crate::session::Session;
 use crate::table::SessionTable;
 use crate::wire::Make;
 
 /// Connections beyond those of sessions: for pages, checks of health, and handshakes.
-const SPARE_CONNECTIONS: usize = 64;
+const SPARE_CONNECTIONS: u32 = 64;
 
 /// What all connections share.
 #[derive(Debug)]
@@ -27,6 +30,10 @@ pub struct Server {
     pub table: SessionTable,
     /// Connections that may still be accepted.
     pub connections: Arc<Semaphore>,
+    /// What is counted.
+    pub metrics: Metrics,
+    /// What clients have to show, if anything.
+    pub token: Option<Token>,
     /// True once the server is being stopped.
     pub draining: watch::Sender<bool>,
 }
@@ -40,6 +47,13 @@ pub struct Peer {
     pub permit: Arc<OwnedSemaphorePermit>,
 }
 
+fn most_connections(limits: &Limits) -> u32 {
+    u32::try_from(limits.sessions)
+        .unwrap_or(u32::MAX)
+        .saturating_add(SPARE_CONNECTIONS)
+        .min(1 << 20)
+}
+
 /// Waits until a watched value is as asked.
 pub(crate) async fn told<T>(watched: &mut watch::Receiver<T>, asked: impl FnMut(&T) -> bool) {
     // If the sender is gone the value will not change: whoever holds it ends all that wait.
@@ -50,17 +64,30 @@ pub(crate) async fn told<T>(watched: &mut watch::Receiver<T>, asked: impl FnMut(
 
 impl Server {
     /// A server with no sessions.
-    #[must_use]
-    pub fn new(options: Options) -> Self {
+    ///
+    /// # Errors
+    /// An access token that cannot be used or is missing.
+    pub fn new(options: Options) -> io::Result<Self> {
+        let token = Token::given(&options)?;
         let limits = &options.limits;
-        let connections = limits.sessions.saturating_add(SPARE_CONNECTIONS);
-        Self {
+        Ok(Self {
             admissions: Arc::new(Admissions::new(limits)),
             table: SessionTable::default(),
-            connections: Arc::new(Semaphore::new(connections.min(Semaphore::MAX_PERMITS))),
+            connections: Arc::new(Semaphore::new(most_connections(limits) as usize)),
+            metrics: Metrics::new(),
+            token,
             draining: watch::Sender::new(false),
             options,
-        }
+        })
+    }
+
+    /// Waits until all connections have ended.
+    pub(crate) async fn drained(&self) {
+        // It fails only for a closed semaphore, and this one is never closed.
+        let _ = self
+            .connections
+            .acquire_many(most_connections(self.limits()))
+            .await;
     }
 
     /// What clients may ask for.

@@ -22,6 +22,8 @@ use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value};
 
+use crate::document;
+
 /// Name of the WebSocket subprotocol.
 pub const SUBPROTOCOL: &str = "gym-babble.v1";
 
@@ -121,10 +123,10 @@ pub struct Make {
     #[serde(default = "next_step")]
     pub autoreset: String,
     /// Name of a profile, or a map of what differs from one; the paper's if nil.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "document::value")]
     pub config: Value,
     /// Options of the environment by name.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "document::map")]
     pub options: Map<String, Value>,
     /// Threads that step them; as many as pay off if nil. Results do not depend on it.
     #[serde(default)]

@@ -18,6 +18,7 @@ use super::reply::encode;
 use super::request::{Envelope, Request};
 use crate::connection::{Connection, End};
 use crate::fault::{Fault, Kind};
+use crate::metrics::Metrics;
 use crate::server::{Server, told};
 use crate::session::Session;
 use crate::table::{Playing, SessionEntry};
@@ -26,12 +27,13 @@ use crate::wire::{Made, Make, Nothing};
 /// A step that takes longer is not done in the thread that serves connections.
 const QUICK: Duration = Duration::from_millis(1);
 
-type Guard = OwnedMutexGuard<Playing>;
+/// Operation of a message that has none, in counters.
+const UNKNOWN: &str = "unknown";
 
 /// A client's hold of a session.
 struct Hold {
     entry: Arc<SessionEntry>,
-    playing: Guard,
+    playing: OwnedMutexGuard<Playing>,
     /// Its place among the clients that took the session up.
     holder: u64,
 }
@@ -44,22 +46,35 @@ pub async fn play(mut connection: Connection, server: Arc<Server>) {
     };
     let (entry, holder) = (Arc::clone(&hold.entry), hold.holder);
     entry.admitted.connected.store(true, Ordering::Relaxed);
-    let end = follow(&mut connection, hold).await;
+    let end = follow(&mut connection, &server, hold).await;
     match end {
         Ok(closed) => {
-            server.table.end(&entry);
+            forget(&entry, &server, closed.reason);
             connection.close_with(closed.code, closed.reason).await;
         }
+        Err(End::Idle) => {
+            forget(&entry, &server, End::Idle.name());
+            connection.close(End::Idle).await;
+        }
         Err(end) => {
-            tracing::info!(session = entry.admitted.name, ?end, "disconnected");
+            tracing::info!(
+                session = entry.admitted.name,
+                reason = end.name(),
+                "disconnected"
+            );
             connection.close(end).await;
-            if end == End::Idle {
-                server.table.end(&entry);
-            } else if end != End::TakenOver {
+            if end != End::TakenOver {
                 outlive(&entry, holder, &server).await;
             }
         }
     }
+}
+
+/// Ends a session.
+fn forget(entry: &SessionEntry, server: &Server, reason: &'static str) {
+    server.table.end(entry);
+    server.metrics.ended(reason);
+    tracing::info!(session = entry.admitted.name, reason, "ended");
 }
 
 /// Keeps a session without a connection until a client resumes it, or none did in time.
@@ -70,10 +85,11 @@ async fn outlive(entry: &SessionEntry, holder: u64, server: &Server) {
     tokio::select! {
         () = told(&mut holders, |&now| now != holder) => {}
         () = sleep(server.limits().resume_time) => {
-            tracing::info!(session = entry.admitted.name, "not resumed in time");
-            server.table.end(entry);
+            forget(entry, server, "not resumed in time");
         }
-        () = told(&mut draining, |&draining| draining) => server.table.end(entry),
+        () = told(&mut draining, |&draining| draining) => {
+            forget(entry, server, End::Draining.name());
+        }
     }
 }
 
@@ -81,9 +97,10 @@ async fn outlive(entry: &SessionEntry, holder: u64, server: &Server) {
 async fn enter(connection: &mut Connection, server: &Arc<Server>) -> Result<Hold, End> {
     loop {
         let first = timeout(server.limits().handshake_time, connection.receive()).await;
-        let envelope = read(first.map_err(|_| End::Idle)??);
-        let id = envelope.id;
-        let held = match envelope.request {
+        let began = Instant::now();
+        let Envelope { id, request } = read(first.map_err(|_| End::Idle)??);
+        let operation = request.as_ref().map_or(UNKNOWN, Request::operation);
+        let held = match request {
             Ok(Request::Make(asked)) => make(connection, server, asked).await?,
             Ok(Request::Resume(asked)) => resume(server, &asked.key).await,
             Ok(other) => Err(Fault::new(
@@ -92,6 +109,9 @@ async fn enter(connection: &mut Connection, server: &Arc<Server>) -> Result<Hold
             )),
             Err(fault) => Err(fault),
         };
+        server
+            .metrics
+            .request(operation, began, held.as_ref().err());
         match held {
             Ok(hold) => {
                 let made = Ok(made(&hold, server));
@@ -114,8 +134,11 @@ async fn make(
     let client = connection.peer.address;
     let opener = Arc::clone(server);
     let open = move || {
-        catch_unwind(AssertUnwindSafe(|| opener.open(client, &asked)))
-            .unwrap_or_else(|_| panicked())
+        let made = catch_unwind(AssertUnwindSafe(|| opener.open(client, &asked)));
+        made.unwrap_or_else(|_| {
+            opener.metrics.panicked();
+            Err(panicked())
+        })
     };
     let opened = connection.during(tokio::task::spawn_blocking(open)).await?;
     let held = opened.and_then(|(session, admission)| {
@@ -199,106 +222,133 @@ impl Closed {
     };
     const FAULT: Self = Self {
         code: 1011,
-        reason: "the server has a fault, and the session ended",
+        reason: "fault of the server",
     };
 }
 
 /// Plays the requests of a client that holds a session.
-async fn follow(connection: &mut Connection, mut hold: Hold) -> Result<Closed, End> {
+async fn follow(
+    connection: &mut Connection,
+    server: &Arc<Server>,
+    mut hold: Hold,
+) -> Result<Closed, End> {
     let mut holders = hold.entry.holder.subscribe();
     loop {
         let message = tokio::select! {
             message = connection.receive() => message?,
             () = told(&mut holders, |&now| now != hold.holder) => return Err(End::TakenOver),
         };
-        let envelope = read(message);
-        let playing = &hold.playing;
-        let reply = match envelope.id {
-            Some(id) if id == playing.last + 1 => {
-                let closes = matches!(envelope.request, Ok(Request::Close(_)));
-                let reply;
-                (hold, reply) = run(connection, hold, id, envelope.request).await?;
-                if hold.playing.session.is_none() || closes {
-                    connection.send(Message::Binary(reply)).await?;
-                    return Ok(if closes { Closed::ASKED } else { Closed::FAULT });
+        let received = message_len(&message);
+        let began = Instant::now();
+        let Envelope { id, request } = read(message);
+        let last = hold.playing.last;
+        let mut closed = None;
+        let reply = match id {
+            Some(id) if id == last + 1 => {
+                let closes = matches!(request, Ok(Request::Close(_)));
+                hold = run(connection, server, hold, id, request, began).await?;
+                if hold.playing.session.is_none() {
+                    closed = Some(Closed::FAULT);
+                } else if closes {
+                    closed = Some(Closed::ASKED);
                 }
-                reply
+                hold.playing.reply.clone()
             }
-            Some(id) if id == playing.last && id > 0 => playing.reply.clone(),
+            Some(id) if id == last && id > 0 => hold.playing.reply.clone(),
             id => {
-                let next = playing.last + 1;
-                let fault = envelope.request.err().filter(|_| id.is_none());
-                let fault = fault.unwrap_or_else(|| {
-                    let message = format!("id = {}: expected {next}", id.unwrap_or_default());
-                    Fault::new(Kind::ProtocolError, message)
-                });
-                hold.entry.admitted.errors.fetch_add(1, Ordering::Relaxed);
+                let fault = misplaced(id, last, request);
+                hold.playing
+                    .admission
+                    .admitted
+                    .errors
+                    .fetch_add(1, Ordering::Relaxed);
+                server.metrics.request(UNKNOWN, began, Some(&fault));
                 encode::<Nothing>(id, &Err(fault))
             }
         };
-        connection.send(Message::Binary(reply)).await?;
+        server.metrics.bytes(received, reply.len());
+        tokio::select! {
+            sent = connection.send(Message::Binary(reply)) => sent?,
+            () = told(&mut holders, |&now| now != hold.holder) => return Err(End::TakenOver),
+        }
+        if let Some(closed) = closed {
+            return Ok(closed);
+        }
+    }
+}
+
+/// The error of a message whose id is not the next one.
+fn misplaced(id: Option<u64>, last: u64, request: Result<Request, Fault>) -> Fault {
+    match (id, request) {
+        (None, Err(fault)) => fault,
+        (id, _) => {
+            let message = format!("id = {}: expected {}", id.unwrap_or_default(), last + 1);
+            Fault::new(Kind::ProtocolError, message)
+        }
     }
 }
 
 /// Executes a request once: its reply is kept, also if the connection ends meanwhile.
 async fn run(
     connection: &mut Connection,
+    server: &Arc<Server>,
     hold: Hold,
     id: u64,
     request: Result<Request, Fault>,
-) -> Result<(Hold, Bytes), End> {
-    let Hold {
-        entry,
-        mut playing,
-        holder,
-    } = hold;
+    began: Instant,
+) -> Result<Hold, End> {
+    let mut hold = hold;
     let here = match &request {
-        Ok(Request::Step(_)) => playing.is_quick,
+        Ok(Request::Step(_)) => hold.playing.is_quick,
         Ok(Request::Close(_)) | Err(_) => true,
         Ok(_) => false,
     };
     if here {
-        run_now(&mut playing, id, request);
-    } else {
-        let work = tokio::task::spawn_blocking(move || {
-            run_now(&mut playing, id, request);
-            playing
-        });
-        playing = connection.during(work).await?;
+        run_now(&mut hold.playing, &server.metrics, id, request, began);
+        return Ok(hold);
     }
-    let reply = playing.reply.clone();
-    let hold = Hold {
-        entry,
-        playing,
-        holder,
-    };
-    Ok((hold, reply))
+    let counters = Arc::clone(server);
+    let work = tokio::task::spawn_blocking(move || {
+        run_now(&mut hold.playing, &counters.metrics, id, request, began);
+        hold
+    });
+    connection.during(work).await
 }
 
-fn run_now(playing: &mut Playing, id: u64, request: Result<Request, Fault>) {
-    let began = Instant::now();
-    let steps = matches!(request, Ok(Request::Step(_)));
+fn run_now(
+    playing: &mut Playing,
+    metrics: &Metrics,
+    id: u64,
+    request: Result<Request, Fault>,
+    began: Instant,
+) {
+    let operation = request.as_ref().map_or(UNKNOWN, Request::operation);
+    let is_step = matches!(request, Ok(Request::Step(_)));
+    let work = Instant::now();
     let (reply, fault) = match (request, &mut playing.session) {
         (Ok(request), Some(session)) => attempt(session, id, request).unwrap_or_else(|| {
+            metrics.panicked();
             playing.session = None;
-            refused(id, panicked::<Nothing>().err())
+            refused(id, panicked())
         }),
-        (Err(fault), _) => refused(id, Some(fault)),
-        (Ok(_), None) => refused(id, panicked::<Nothing>().err()),
+        (Err(fault), _) => refused(id, fault),
+        (Ok(_), None) => refused(id, panicked()),
     };
     let admitted = &playing.admission.admitted;
     if fault.is_some() {
         admitted.errors.fetch_add(1, Ordering::Relaxed);
-    } else if steps {
+    } else if is_step {
         admitted
             .steps
             .fetch_add(admitted.envs as u64, Ordering::Relaxed);
+        metrics.steps(admitted.envs);
     }
-    if steps {
-        playing.is_quick = began.elapsed() < QUICK;
+    if is_step {
+        playing.is_quick = work.elapsed() < QUICK;
     }
     playing.last = id;
     playing.reply = reply;
+    metrics.request(operation, began, fault.as_ref());
 }
 
 /// Nothing if the work panicked.
@@ -307,18 +357,26 @@ fn attempt(session: &mut Session, id: u64, request: Request) -> Option<(Bytes, O
     catch_unwind(AssertUnwindSafe(work)).ok()
 }
 
-fn refused(id: u64, fault: Option<Fault>) -> (Bytes, Option<Fault>) {
-    let refused = fault.clone().map_or(Ok(Nothing {}), Err);
-    (encode(Some(id), &refused), fault)
+fn refused(id: u64, fault: Fault) -> (Bytes, Option<Fault>) {
+    let refused = Err(fault);
+    (encode::<Nothing>(Some(id), &refused), refused.err())
 }
 
-fn panicked<T>() -> Result<T, Fault> {
+fn panicked() -> Fault {
     let message = "the server has a fault: please report it; the session ended";
-    Err(Fault::new(Kind::ServerError, message))
+    Fault::new(Kind::ServerError, message)
 }
 
 fn fault(error: &impl std::fmt::Display) -> Fault {
     Fault::new(Kind::ServerError, error.to_string())
+}
+
+fn message_len(message: &Message) -> usize {
+    match message {
+        Message::Binary(bytes) => bytes.len(),
+        Message::Text(text) => text.len(),
+        _ => 0,
+    }
 }
 
 fn read(message: Message) -> Envelope {

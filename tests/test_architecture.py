@@ -67,6 +67,7 @@ LAYERS = (
         "brain",
         "agents",
         "export",
+        "remote",
         "sb3",
         "rllib",
     ),
@@ -74,8 +75,8 @@ LAYERS = (
 )
 
 HEAVY_MODULES = {
-    *("jinja2", "matplotlib", "pygame", "ray", "rich", "scipy", "stable_baselines3", "torch"),
-    "typer",
+    *("jinja2", "matplotlib", "msgspec", "pygame", "ray", "rich", "scipy", "stable_baselines3"),
+    *("torch", "typer", "websockets"),
 }
 
 

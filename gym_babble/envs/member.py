@@ -58,8 +58,12 @@ class BatchMember:
         if not isinstance(state, bytes):
             raise SnapshotError(f"state is a {type(state).__name__}, expected bytes")
         self._batch.load(self._i, state)
+        self.go_on()
+
+    def go_on(self) -> None:
+        """The batch continues from another state, with frames to show from now on."""
         self._ended.clear()
-        self._shown = self._batch.moments(self._i)
+        self._shown = 0 if self._interface.render_mode is None else self._batch.moments(self._i)
         self.ready = True
         self.np_random_seed = -1
 

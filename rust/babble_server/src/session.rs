@@ -168,7 +168,8 @@ impl Session {
     /// Environments that were never seeded are seeded by chance.
     fn seed(&mut self, seeds: Option<&[Option<u64>]>, mask: &[bool]) -> Result<(), Fault> {
         for (i, &masked) in mask.iter().enumerate() {
-            let given = seeds.and_then(|seeds| seeds[i]).filter(|_| masked);
+            let given = seeds.and_then(|seeds| seeds[i]);
+            let given = given.filter(|_| masked || !self.seeded);
             let seed = match given {
                 Some(seed) => seed,
                 None if self.seeded => continue,

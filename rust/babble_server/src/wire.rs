@@ -170,6 +170,8 @@ pub struct Made {
     pub num_envs: usize,
     /// When an ended episode begins anew.
     pub autoreset: String,
+    /// Threads that step them.
+    pub threads: usize,
     /// The complete config.
     pub config: Value,
     /// All options by name.
@@ -190,7 +192,7 @@ pub struct Reset {
     #[serde(default)]
     pub mask: Option<Bytes>,
     /// A seed or nil for each environment (n), those of `gymnasium.Env.reset`: the same cases in
-    /// every language. Only the masked ones are seeded.
+    /// every language. Only the masked ones are seeded; in the first reset all are.
     #[serde(default)]
     pub seeds: Option<Vec<Option<u64>>>,
     /// What to ask of the cases of each environment (n), from now on: a map, empty to ask nothing

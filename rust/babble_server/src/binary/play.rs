@@ -173,7 +173,7 @@ async fn resume(server: &Server, key: &str) -> Result<Hold, Fault> {
     let playing = timeout(longest, Arc::clone(&entry.playing).lock_owned()).await;
     let playing = playing.map_err(|_| {
         let message = "the session's last request still runs; resume it again";
-        Fault::new(Kind::SessionError, message)
+        Fault::new(Kind::LimitError, message)
     })?;
     tracing::info!(session = entry.admitted.name, "resumed");
     Ok(Hold {
@@ -198,6 +198,7 @@ fn made(hold: &Hold, server: &Server) -> Made {
         task: session.map_or_else(String::new, |session| session.entry.name.to_owned()),
         num_envs: hold.entry.admitted.envs,
         autoreset: session.map_or_else(String::new, |session| session.autoreset.to_string()),
+        threads: session.map_or(0, Session::threads),
         config: json(serde_json::to_value(task.map(AnyTask::config))),
         options: session.map_or(Value::Null, |session| session.options.clone().into()),
         spec: json(serde_json::to_value(session.map(|session| &session.spec))),

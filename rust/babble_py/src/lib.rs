@@ -13,6 +13,7 @@ mod guarded;
 mod learner;
 mod policy;
 mod reach;
+mod server;
 mod signals;
 mod task;
 mod tensors;
@@ -42,6 +43,8 @@ mod _core {
     use crate::policy::{Plans, Reference, act_on, check_deciding};
     #[pymodule_export]
     use crate::reach::{movement, place, posture_at};
+    #[pymodule_export]
+    use crate::server::{serve, server_protocol};
     #[pymodule_export]
     use crate::task::{Task, check_fixed, registry_json};
     #[pymodule_export]

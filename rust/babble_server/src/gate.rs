@@ -1,95 +1,20 @@
 //! Who may come in: the access token, the origin of a page, and the name that the server is called by.
 
-use std::fmt;
-use std::io;
 use std::net::IpAddr;
 use std::sync::Arc;
 
 use axum::extract::{Request, State};
-use axum::http::header::{AUTHORIZATION, HOST, HeaderValue, ORIGIN, WWW_AUTHENTICATE};
+use axum::http::header::{HOST, HeaderValue, ORIGIN, WWW_AUTHENTICATE};
 use axum::http::uri::Authority;
-use axum::http::{HeaderMap, HeaderName, StatusCode};
+use axum::http::{HeaderName, StatusCode};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
-use subtle::ConstantTimeEq;
 use tokio::time::timeout;
 
-use crate::options::Options;
 use crate::server::Server;
 
-/// Environment variable with the access token.
-const TOKEN_VARIABLE: &str = "GYM_BABBLE_TOKEN";
-const TOKEN_LENGTH: usize = 16;
 /// The one path that needs no token: whoever starts servers asks it whether they live.
 const HEALTH: &str = "/health";
-
-/// A secret that clients show.
-#[derive(Clone)]
-pub struct Token(String);
-
-impl fmt::Debug for Token {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Token(..)")
-    }
-}
-
-impl Token {
-    /// The token that the program was given, if any.
-    ///
-    /// # Errors
-    /// A file that cannot be read, a token that is too short or cannot stand in a header, or none for an
-    /// address that other machines reach.
-    pub fn given(options: &Options) -> io::Result<Option<Self>> {
-        let invalid = |message: String| io::Error::new(io::ErrorKind::InvalidInput, message);
-        let given = match &options.token_file {
-            Some(path) => Some(std::fs::read_to_string(path).map_err(|error| {
-                io::Error::new(error.kind(), format!("{}: {error}", path.display()))
-            })?),
-            None => std::env::var(TOKEN_VARIABLE).ok(),
-        };
-        let Some(given) = given else {
-            if options.host.is_loopback() {
-                return Ok(None);
-            }
-            return Err(invalid(format!(
-                "host = {}: other machines reach this address, so it needs an access token in \
-                 {TOKEN_VARIABLE} or --token-file",
-                options.host
-            )));
-        };
-        let token = given.trim();
-        if token.len() < TOKEN_LENGTH || !token.bytes().all(|byte| byte.is_ascii_graphic()) {
-            return Err(invalid(format!(
-                "the access token has {} characters: expected at least {TOKEN_LENGTH}, printable \
-                 ASCII without spaces",
-                token.chars().count()
-            )));
-        }
-        Ok(Some(Self(token.to_owned())))
-    }
-
-    fn is_in(&self, headers: &HeaderMap) -> bool {
-        let shown = headers
-            .get(AUTHORIZATION)
-            .and_then(|value| value.to_str().ok())
-            .and_then(|value| value.split_once(' '))
-            .filter(|(scheme, _)| scheme.eq_ignore_ascii_case("bearer"))
-            .map_or("", |(_, token)| token.trim());
-        self.0.as_bytes().ct_eq(shown.as_bytes()).into()
-    }
-}
-
-/// Checks that an origin to allow is one.
-///
-/// # Errors
-/// What is wrong with it.
-pub(crate) fn origin(text: &str) -> Result<String, String> {
-    let authority = text.split_once("://").map(|(_, rest)| rest);
-    match authority.and_then(|rest| rest.parse::<Authority>().ok()) {
-        Some(authority) if !authority.as_str().contains('@') => Ok(text.to_ascii_lowercase()),
-        _ => Err("expected scheme, host and port alone, as in https://example.org:8443".to_owned()),
-    }
-}
 
 /// Lets a request in, or says why not.
 pub(crate) async fn check(
@@ -184,7 +109,8 @@ fn is_allowed(origin: &HeaderValue, host: Option<&str>, allowed: &[String]) -> b
 
 #[cfg(test)]
 mod tests {
-    use super::{is_allowed, is_loopback, origin};
+    use super::{is_allowed, is_loopback};
+    use crate::token::origin;
     use axum::http::HeaderValue;
 
     #[test]
@@ -229,18 +155,5 @@ mod tests {
             assert_eq!(is_allowed(&header, host, &allowed), expected, "{page}");
         }
         assert!(!is_allowed(&HeaderValue::from_static("null"), None, &[]));
-    }
-
-    #[test]
-    fn an_origin_has_no_path() {
-        for wrong in [
-            "example.org",
-            "https://",
-            "https://example.org/",
-            "https://a@example.org",
-            "null",
-        ] {
-            assert!(origin(wrong).is_err(), "{wrong}");
-        }
     }
 }

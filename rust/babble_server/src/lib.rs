@@ -1,14 +1,13 @@
 #![doc = include_str!("../README.md")]
 
 use std::ffi::OsString;
-use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::Parser;
 use tracing_subscriber::EnvFilter;
 use tracing_subscriber::filter::LevelFilter;
 
-use crate::options::{Cli, LogFormat};
+use crate::options::{Cli, Command, LogFormat};
 
 pub mod admission;
 mod app;
@@ -16,37 +15,45 @@ pub mod binary;
 pub mod connection;
 mod document;
 pub mod fault;
-pub mod gate;
+mod gate;
 pub mod limits;
 pub mod metrics;
 pub mod options;
 mod page;
+pub mod protocol;
 mod serve;
 pub mod server;
 pub mod session;
 pub mod table;
+pub mod token;
 pub mod wire;
 
-/// Runs the program with its arguments, the first of which is its name.
-pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+/// Runs the program with its arguments, the first of which is its name; returns its exit code.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
         Err(error) => {
             let _ = error.print();
-            return ExitCode::from(error.exit_code() as u8);
+            return error.exit_code() as u8;
         }
     };
-    log(cli.options.log);
-    match start(cli.options) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::FAILURE
+    match cli.command {
+        Some(Command::Protocol) => {
+            println!("{}", protocol::json());
+            0
         }
+        None => match start(cli.options) {
+            Ok(()) => 0,
+            Err(error) => {
+                eprintln!("error: {error}");
+                1
+            }
+        },
     }
 }
 
 fn start(options: options::Options) -> std::io::Result<()> {
+    log(options.log);
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .max_blocking_threads(options.limits.sessions.max(1))
         .enable_all()

@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    babble_server::run(std::env::args_os())
+    babble_server::run(std::env::args_os()).into()
 }

@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use crate::gate;
 use crate::limits::{Limits, seconds};
+use crate::token;
 
 /// The environments of gym-babble over a network.
 #[derive(Debug, Clone, Parser)]
@@ -41,7 +41,7 @@ pub struct Options {
     #[arg(long)]
     pub token_file: Option<PathBuf>,
     /// Origin of pages that may connect, as in `https://example.org`; may be repeated.
-    #[arg(long, value_parser = gate::origin)]
+    #[arg(long, value_parser = token::origin)]
     pub allow_origin: Vec<String>,
     /// How long running requests may take to end when the server is stopped.
     #[arg(long = "drain-seconds", default_value = "30", value_parser = seconds)]

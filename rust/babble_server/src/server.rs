@@ -8,12 +8,12 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
 
 use crate::admission::{Admission, Admissions};
 use crate::fault::{Fault, Kind};
-use crate::gate::Token;
 use crate::limits::Limits;
 use crate::metrics::Metrics;
 use crate::options::Options;
 use crate::session::Session;
 use crate::table::SessionTable;
+use crate::token::Token;
 use crate::wire::Make;
 
 /// Connections beyond those of sessions: for pages, checks of health, and handshakes.
@@ -68,7 +68,7 @@ impl Server {
     /// # Errors
     /// An access token that cannot be used or is missing.
     pub fn new(options: Options) -> io::Result<Self> {
-        let token = Token::given(&options)?;
+        let token = Token::given(options.token_file.as_deref(), options.host)?;
         let limits = &options.limits;
         Ok(Self {
             admissions: Arc::new(Admissions::new(limits)),

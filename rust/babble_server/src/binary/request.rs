@@ -2,27 +2,34 @@
 
 use rmp::decode;
 use rmp_serde::Deserializer;
+use schemars::{Schema, SchemaGenerator};
 use serde::de::DeserializeOwned;
 
 use crate::fault::{Fault, Kind};
 use crate::wire::{
-    GoalReward, Load, Make, Nothing, Of, Render, Reset, Resume, Save, Scenarios, Step,
+    Case, Cases, GoalReward, GoalRewards, Hash, Load, Made, Make, Moments, Nothing, Of, Picture,
+    Render, Reset, Resume, Save, Saved, Scenarios, Step, Stepped, Trail,
 };
 
 /// Maps and arrays within one another.
 const DEPTH: usize = 32;
 
-macro_rules! requests {
-    ($($(#[$doc:meta])* $name:literal: $variant:ident($body:ty)),* $(,)?) => {
+macro_rules! operations {
+    ($($name:literal: $variant:ident($body:ty) -> $reply:ty, $does:literal;)*) => {
         /// A request of a client.
         #[derive(Debug, Clone, PartialEq)]
-        #[expect(missing_docs, reason = "the operations of wire")]
+        #[expect(missing_docs, reason = "OPERATIONS describes them")]
         pub enum Request {
             $($variant($body)),*
         }
 
-        /// Names of the operations.
-        pub const OPERATIONS: &[&str] = &[$($name),*];
+        /// All operations.
+        pub const OPERATIONS: &[Operation] = &[$(Operation {
+            name: $name,
+            does: $does,
+            request: SchemaGenerator::subschema_for::<$body>,
+            reply: SchemaGenerator::subschema_for::<$reply>,
+        }),*];
 
         impl Request {
             /// Name of the operation.
@@ -36,31 +43,48 @@ macro_rules! requests {
             fn read(operation: &str, body: &[u8]) -> Result<Self, Fault> {
                 match operation {
                     $($name => Ok(Self::$variant(read($name, body)?)),)*
-                    _ => Err(protocol(format!(
-                        "operation {operation:?} is unknown; known: {}",
-                        OPERATIONS.join(", "),
-                    ))),
+                    _ => {
+                        let known: Vec<_> = OPERATIONS.iter().map(|known| known.name).collect();
+                        let known = known.join(", ");
+                        Err(protocol(format!("operation {operation:?} is unknown; known: {known}")))
+                    }
                 }
             }
         }
     };
 }
 
-requests! {
-    "make": Make(Make),
-    "resume": Resume(Resume),
-    "reset": Reset(Reset),
-    "step": Step(Step),
-    "save": Save(Save),
-    "load": Load(Load),
-    "hash": Hash(Of),
-    "case": Case(Of),
-    "trail": Trail(Of),
-    "moments": Moments(Of),
-    "render": Render(Render),
-    "goal_reward": GoalReward(GoalReward),
-    "scenarios": Scenarios(Scenarios),
-    "close": Close(Nothing),
+/// What a client can ask.
+#[derive(Debug, Clone, Copy)]
+pub struct Operation {
+    /// Its name.
+    pub name: &'static str,
+    /// What it does.
+    pub does: &'static str,
+    /// Schema of the request's body.
+    pub request: fn(&mut SchemaGenerator) -> Schema,
+    /// Schema of the reply's body.
+    pub reply: fn(&mut SchemaGenerator) -> Schema,
+}
+
+operations! {
+    "make": Make(Make) -> Made, "begins a session with a batch of environments";
+    "resume": Resume(Resume) -> Made,
+        "takes up a session whose connection broke, or is still held by a client that is gone";
+    "reset": Reset(Reset) -> Stepped, "begins new episodes";
+    "step": Step(Step) -> Stepped, "steps all environments once";
+    "save": Save(Save) -> Saved, "gives states, from which `load` continues bit for bit";
+    "load": Load(Load) -> Nothing,
+        "continues environments from states: all of them or, after an error, none";
+    "hash": Hash(Of) -> Hash, "gives a hash of the state of an environment";
+    "case": Case(Of) -> Case, "gives the case of the running episode of an environment";
+    "trail": Trail(Of) -> Trail, "gives the recorded path of the hand of an environment";
+    "moments": Moments(Of) -> Moments, "counts the recorded moments of an environment";
+    "render": Render(Render) -> Picture, "draws an environment";
+    "goal_reward": GoalReward(GoalReward) -> GoalRewards,
+        "computes rewards of the goal form, for hindsight replay";
+    "scenarios": Scenarios(Scenarios) -> Cases, "gives the test cases of a protocol";
+    "close": Close(Nothing) -> Nothing, "ends the session";
 }
 
 /// A message of a client.

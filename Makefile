@@ -26,7 +26,7 @@ EXTENSION_SOURCES := Cargo.toml Cargo.lock $(shell find rust -type f -not -name 
 	$(foreach folder,$(NOT_IN_EXTENSION),-not -path '*/$(folder)/*'))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo pictures test test-rust test-python slow soak fuzz golden-native wasm lint lint-rust \
+.PHONY: help setup demo serve pictures test test-rust test-python slow soak fuzz golden-native wasm lint lint-rust \
 	lint-python lint-workflows deny bench microbench frameworks results constraints audit-export clean
 
 help: ## List the targets
@@ -37,6 +37,10 @@ setup: $(STAMPS)/extension ## Install everything into .venv and build the extens
 demo: setup ## Compare the agents on both tasks and write figures and tables into report/
 	$(BIN)/gym-babble study run demo --out report/study
 	$(BIN)/gym-babble study report report/study --out report
+
+# SERVE holds options: `make serve SERVE='--port 9000'`.
+serve: ## Build the server, which needs no Python, and start it
+	cargo run --release -p babble_server -- $(SERVE)
 
 PICTURES := docs/images
 pictures: setup ## Draw the pictures of README and docs again, without those of `make bench` (some minutes)

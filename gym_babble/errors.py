@@ -10,8 +10,12 @@ __all__ = [
     "BusyError",
     "ConfigError",
     "DivergedError",
+    "LimitError",
     "MissingExtraError",
     "ScenarioError",
+    "ServerError",
+    "ServerTimeoutError",
+    "SessionLostError",
     "SnapshotError",
     "StudyError",
 ]
@@ -51,6 +55,22 @@ class StudyError(BabbleError, ValueError):
 
 class DivergedError(BabbleError, ArithmeticError):
     """An agent's weights became NaN or infinite while it learnt."""
+
+
+class ServerError(BabbleError, ConnectionError):
+    """A server of environments cannot be reached, refuses the client, or has a fault."""
+
+
+class ServerTimeoutError(ServerError, TimeoutError):
+    """A server did not answer in time. Whether it executed the request is unknown."""
+
+
+class SessionLostError(ServerError):
+    """The session of a remote environment has ended on the server: make a new environment."""
+
+
+class LimitError(BabbleError, RuntimeError):
+    """A request is beyond what a server allows."""
 
 
 class MissingExtraError(BabbleError, ImportError):

@@ -17,6 +17,7 @@ from gym_babble.cli.info import info
 from gym_babble.cli.list import list_environments
 from gym_babble.cli.record import record
 from gym_babble.cli.reproduce import reproduce
+from gym_babble.cli.serve import serve
 from gym_babble.cli.study import study
 from gym_babble.errors import BabbleError, MissingExtraError
 
@@ -31,6 +32,14 @@ app = typer.Typer(
 app.command("list")(list_environments)
 for command in (info, babble, evaluate, compare, record, export, doctor):
     app.command()(command)
+# Its options are the server's own, which also shows the help.
+app.command(
+    context_settings={
+        "allow_extra_args": True,
+        "ignore_unknown_options": True,
+        "help_option_names": [],
+    }
+)(serve)
 app.add_typer(reproduce, name="reproduce")
 app.add_typer(study, name="study")
 

@@ -51,7 +51,8 @@ class Interface:
         self.task = _core.Task(task, config_json(config), json.dumps(given))
         self.render_mode = render_mode
         self._ignored: set[str] = set()
-        self._given = deepcopy(given)
+        self.given: dict[str, Any] = deepcopy(given)
+        """The options that were given, by name."""
         self.options: dict[str, Any] = deepcopy(self.entry.defaults | given)
         """All options by name."""
         self.quantities: dict[str, Any] = {
@@ -71,7 +72,7 @@ class Interface:
         """The task's outcomes with the core's codes."""
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _interface, (self.entry.name, self.task.config(), self.render_mode, self._given)
+        return _interface, (self.entry.name, self.task.config(), self.render_mode, self.given)
 
     @cached_property
     def config_label(self) -> str:

@@ -40,9 +40,9 @@ class BatchMember:
         self.attributes: dict[str, Any] = {}
         """What `set_attr` of the batch set."""
 
-    def seed(self, seed: int, stream: int) -> None:
+    def seed(self, seed: int) -> None:
         """Starts the stream of cases anew."""
-        self._batch.seed(self._i, stream)
+        self._batch.seed(self._i, seed)
         self.np_random_seed = seed
 
     def get_state(self) -> bytes:
@@ -58,8 +58,12 @@ class BatchMember:
         if not isinstance(state, bytes):
             raise SnapshotError(f"state is a {type(state).__name__}, expected bytes")
         self._batch.load(self._i, state)
+        self.go_on()
+
+    def go_on(self) -> None:
+        """The batch continues from another state, with frames to show from now on."""
         self._ended.clear()
-        self._shown = self._batch.moments(self._i)
+        self._shown = 0 if self._interface.render_mode is None else self._batch.moments(self._i)
         self.ready = True
         self.np_random_seed = -1
 
@@ -141,5 +145,4 @@ class BatchMember:
 
     def retina(self) -> NDArray[np.uint8]:
         """The eye's image in obs="retina"."""
-        size = self._interface.retina_size
-        return self._batch.render(self._i, "eye", size, size)
+        return self._batch.retina(self._i, self._interface.retina_size)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import gymnasium
 
 from gym_babble import _core
-from gym_babble.checks import check_whole
+from gym_babble.checks import check_seed, check_whole
 from gym_babble.envs.interface import RENDER_MODES, Interface, document
 from gym_babble.envs.making import Made, time_limit
 from gym_babble.envs.member import BatchMember
@@ -94,17 +94,14 @@ class BabbleEnv(Made, gymnasium.Env[Any, Any]):
             options: What to ask of the case; see the class.
 
         Raises:
-            ConfigError: An option is unknown.
+            ConfigError: An option is unknown, or the seed is not a whole number in [0, 2^64).
             ScenarioError: The case asked for cannot be played. The options are forgotten, and the
                 episode goes on.
             BusyError: Another thread uses the environment.
         """
         request = None if options is None else self._interface.request(options)
         with self._batch:
-            super().reset(seed=seed)
-            if seed is not None or not self._seeded:
-                self._batch.seed(0, int(self.np_random.integers(2**63)))
-                self._seeded = True
+            self._seed(seed)
             if request is not None:
                 self._batch.request(0, request)
             self._batch.reset()
@@ -113,6 +110,18 @@ class BabbleEnv(Made, gymnasium.Env[Any, Any]):
             if self.render_mode == "human":
                 self._show()
         return observation, info
+
+    def _seed(self, seed: int | None) -> None:
+        """Starts the stream of cases anew; by chance if it never began."""
+        if seed is not None:
+            seed = check_seed(seed)
+        elif not self._seeded:
+            seed = int(self.np_random.integers(2**63))
+        else:
+            return
+        super().reset(seed=seed)
+        self._batch.seed(0, seed)
+        self._seeded = True
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """One step.

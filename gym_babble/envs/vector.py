@@ -6,12 +6,11 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-from gymnasium.utils.seeding import np_random
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from gym_babble import _core
-from gym_babble.checks import check_threads, check_whole, processors, shown
+from gym_babble.checks import check_seed, check_threads, check_whole, processors, shown
 from gym_babble.envs.interface import RENDER_MODES, Interface, document
 from gym_babble.envs.making import Made
 from gym_babble.envs.member import BatchMember
@@ -153,7 +152,8 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
             options: As for the single environment, and `reset_mask`.
 
         Raises:
-            ConfigError: An option is unknown or of a wrong length.
+            ConfigError: An option is unknown or of a wrong length, or a seed is not a whole number
+                in [0, 2^64).
             ScenarioError: A case asked for cannot be played. The options are forgotten, and all
                 episodes go on.
             BusyError: Another thread uses the batch.
@@ -225,7 +225,7 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
     def _seed(self, seed: int | Sequence[int | None] | None, mask: NDArray[np.bool_]) -> None:
         n = self.num_envs
         if isinstance(seed, int | np.integer):
-            super().reset(seed=int(seed))
+            super().reset(seed=check_seed(seed))
             seeds: list[int | None] = [int(seed) + i for i in range(n)]
         else:
             seeds = [None] * n if seed is None else _listed(seed)
@@ -237,13 +237,13 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
                 new if given is None else given for given, new in zip(seeds, drawn, strict=True)
             ]
             mask = np.ones(n, np.bool_)
-        streams = [
-            (i, value, int(np_random(value)[0].integers(2**63)))
-            for i, value in enumerate(seeds)
-            if mask[i] and value is not None
+        chosen = [
+            (member, check_seed(value))
+            for member, value, masked in zip(self._members, seeds, mask, strict=True)
+            if masked and value is not None
         ]
-        for i, value, stream in streams:
-            self._members[i].seed(value, stream)
+        for member, value in chosen:
+            member.seed(value)
         self._seeded = True
 
     def _requests(self, options: Any) -> list[dict[str, Any] | None]:

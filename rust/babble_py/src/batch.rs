@@ -2,12 +2,11 @@
 
 use std::sync::Arc;
 
-use babble_env::AnyBatch;
-use babble_env::EnvError;
 use babble_env::batch::Record;
 use babble_env::case::CasePart;
 use babble_env::picture::View;
 use babble_env::task::MAX_MEASURES;
+use babble_env::{AnyBatch, EnvError, seeding};
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -94,9 +93,10 @@ impl Batch {
         self.envs.leave();
     }
 
-    /// Starts the stream of cases of environment `i` anew.
+    /// Starts the stream of cases of environment `i` anew, with a seed of Gymnasium's `reset`.
     fn seed(&self, i: usize, seed: u64) -> PyResult<()> {
-        self.envs.write()?.seed(i, seed).map_err(errors::env)
+        let stream = seeding::stream_seed(seed);
+        self.envs.write()?.seed(i, stream).map_err(errors::env)
     }
 
     /// What the following resets of environment `i` ask of their cases, in the task's own words.
@@ -273,6 +273,16 @@ impl Batch {
         PyArray1::from_vec(py, image.into_raw()).reshape([height as usize, width as usize, 3])
     }
 
+    /// The eye's image (size, size, 3) of environment `i`.
+    fn retina<'py>(
+        &self,
+        py: Python<'py>,
+        i: usize,
+        size: u32,
+    ) -> PyResult<Bound<'py, PyArray3<u8>>> {
+        self.render(py, i, View::Eye.name(), size, size, None)
+    }
+
     /// The eye's last image (size, size, 3) of the ended episode of environment `i`; None if it did not
     /// begin anew by itself within the last step.
     fn retina_ended<'py>(
@@ -403,6 +413,12 @@ impl Batch {
 
 /// What is shown of an environment that is not in the mask.
 const NO_MEASURES: [f64; MAX_MEASURES] = [0.0; MAX_MEASURES];
+
+/// Seed of the stream of cases for a seed of Gymnasium's `reset`.
+#[pyfunction]
+pub(crate) fn stream_seed(seed: u64) -> u64 {
+    seeding::stream_seed(seed)
+}
 
 /// A key of the infos.
 #[derive(Debug)]

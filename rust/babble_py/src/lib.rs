@@ -13,6 +13,7 @@ mod guarded;
 mod learner;
 mod policy;
 mod reach;
+mod server;
 mod signals;
 mod task;
 mod tensors;
@@ -25,7 +26,7 @@ use pyo3::prelude::*;
 #[pymodule(gil_used = false)]
 mod _core {
     #[pymodule_export]
-    use crate::batch::Batch;
+    use crate::batch::{Batch, stream_seed};
     #[pymodule_export]
     use crate::brain::{
         Association, ConjunctiveMap, PopulationMap, generator_curve, place_curve, rule_json,
@@ -42,6 +43,8 @@ mod _core {
     use crate::policy::{Plans, Reference, act_on, check_deciding};
     #[pymodule_export]
     use crate::reach::{movement, place, posture_at};
+    #[pymodule_export]
+    use crate::server::{serve, server_protocol};
     #[pymodule_export]
     use crate::task::{Task, check_fixed, registry_json};
     #[pymodule_export]

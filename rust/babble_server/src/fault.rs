@@ -27,6 +27,24 @@ pub enum Kind {
     ServerError,
 }
 
+impl Kind {
+    /// Its name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ConfigError => "ConfigError",
+            Self::ActionError => "ActionError",
+            Self::ScenarioError => "ScenarioError",
+            Self::SnapshotError => "SnapshotError",
+            Self::ResetNeeded => "ResetNeeded",
+            Self::ProtocolError => "ProtocolError",
+            Self::SessionError => "SessionError",
+            Self::LimitError => "LimitError",
+            Self::ServerError => "ServerError",
+        }
+    }
+}
+
 /// An error as a client gets it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema, thiserror::Error)]
 #[error("{message}")]

@@ -1,6 +1,79 @@
 #![doc = include_str!("../README.md")]
 
+use std::ffi::OsString;
+use std::time::Duration;
+
+use clap::Parser;
+use tracing_subscriber::EnvFilter;
+use tracing_subscriber::filter::LevelFilter;
+
+use crate::options::{Cli, Command, LogFormat};
+
+pub mod admission;
+mod app;
+pub mod binary;
+pub mod connection;
+mod document;
 pub mod fault;
+mod gate;
 pub mod limits;
+pub mod metrics;
+pub mod options;
+mod page;
+pub mod protocol;
+mod serve;
+pub mod server;
 pub mod session;
+pub mod table;
+pub mod token;
 pub mod wire;
+
+/// Runs the program with its arguments, the first of which is its name; returns its exit code.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let cli = match Cli::try_parse_from(arguments) {
+        Ok(cli) => cli,
+        Err(error) => {
+            let _ = error.print();
+            return error.exit_code() as u8;
+        }
+    };
+    match cli.command {
+        Some(Command::Protocol) => {
+            println!("{}", protocol::json());
+            0
+        }
+        None => match start(cli.options) {
+            Ok(()) => 0,
+            Err(error) => {
+                eprintln!("error: {error}");
+                1
+            }
+        },
+    }
+}
+
+fn start(options: options::Options) -> std::io::Result<()> {
+    log(options.log);
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .max_blocking_threads(options.limits.sessions.max(1))
+        .enable_all()
+        .build()?;
+    let served = runtime.block_on(serve::serve(options));
+    runtime.shutdown_timeout(Duration::ZERO);
+    served
+}
+
+/// Logs to stderr, what `RUST_LOG` asks for.
+fn log(format: LogFormat) {
+    let filter = EnvFilter::builder()
+        .with_default_directive(LevelFilter::INFO.into())
+        .from_env_lossy();
+    let log = tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(std::io::stderr);
+    // A program that has a log of its own keeps it.
+    let _ = match format {
+        LogFormat::Text => log.with_ansi(false).try_init(),
+        LogFormat::Json => log.json().try_init(),
+    };
+}

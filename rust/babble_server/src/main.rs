@@ -1,3 +1,7 @@
 //! The environment server.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    babble_server::run(std::env::args_os()).into()
+}

@@ -57,15 +57,12 @@ pub struct Session {
 }
 
 impl Session {
-    /// Environments that have to be reset before they can step.
+    /// Environments that have to be reset before they can step, in at most so many threads.
     ///
     /// # Errors
     /// [`Fault`] for an id, option or config that is refused, or beyond the limits.
-    pub fn make(asked: &Make, limits: &Limits) -> Result<Self, Fault> {
+    pub fn make(asked: &Make, limits: &Limits, threads: usize) -> Result<Self, Fault> {
         let n = asked.num_envs;
-        if n > limits.envs {
-            return Err(Fault::limit("num_envs", n, limits.envs));
-        }
         let (entry, row) = registry::environment(&asked.env)?;
         let task = registry::make(&asked.env, read_config(&asked.config)?, &asked.options)?;
         let options = all_options(entry, row.presets, &asked.options);
@@ -85,8 +82,8 @@ impl Session {
                 limits.message_bytes,
             ));
         }
-        let threads = asked.threads.unwrap_or((n / entry.envs_per_thread).max(1));
-        let executor = Executor::new(threads.clamp(1, limits.threads))?.interrupted_by(is_late);
+        let wanted = asked.threads.unwrap_or(n / entry.envs_per_thread);
+        let executor = Executor::new(wanted.clamp(1, threads))?.interrupted_by(is_late);
         let batch = Arc::clone(&task).batch(n, autoreset, executor)?;
         Ok(Self {
             env: asked.env.clone(),
@@ -106,6 +103,12 @@ impl Session {
     #[must_use]
     pub fn envs(&self) -> usize {
         self.batch.envs()
+    }
+
+    /// Threads that step them.
+    #[must_use]
+    pub fn threads(&self) -> usize {
+        self.batch.threads()
     }
 
     /// Does a request within its time.
@@ -165,7 +168,8 @@ impl Session {
     /// Environments that were never seeded are seeded by chance.
     fn seed(&mut self, seeds: Option<&[Option<u64>]>, mask: &[bool]) -> Result<(), Fault> {
         for (i, &masked) in mask.iter().enumerate() {
-            let given = seeds.and_then(|seeds| seeds[i]).filter(|_| masked);
+            let given = seeds.and_then(|seeds| seeds[i]);
+            let given = given.filter(|_| masked || !self.seeded);
             let seed = match given {
                 Some(seed) => seed,
                 None if self.seeded => continue,
@@ -396,8 +400,8 @@ impl Session {
     /// # Errors
     /// [`Fault`] for a protocol that there is not, or more cases than environments are allowed.
     pub fn scenarios(&self, asked: &Scenarios) -> Result<Vec<Option<CaseMap>>, Fault> {
-        if asked.n > self.limits.envs {
-            return Err(Fault::limit("n", asked.n, self.limits.envs));
+        if asked.n > self.limits.envs_per_session {
+            return Err(Fault::limit("n", asked.n, self.limits.envs_per_session));
         }
         let purpose = match &asked.split {
             None => Purpose::Test,

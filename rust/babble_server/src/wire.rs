@@ -6,9 +6,12 @@
 //! are MessagePack binaries: little-endian, row after row, without a header, as their shape follows from
 //! the reply to `make`.
 //!
-//! Ids are whole numbers that grow by one from 1 in a session. A request whose id was the last one to be
-//! executed is not executed again: it gets the same reply. So a client that lost its connection resumes
-//! its session and sends the request again of which it saw no reply.
+//! A connection begins with `make` or `resume`, whose id is 0; after an error it may try again. The
+//! requests that follow have ids that grow by one from 1 in a session, also after an error. A request
+//! whose id was the last one to be executed is not executed again: it gets the same reply. So a client
+//! that lost its connection resumes its session and sends the request again of which it saw no reply. Any
+//! other id is an error, and so is a message whose id cannot be read, which is answered with nil in place
+//! of the id; neither counts. After `close` the server ends the connection with code 1000.
 
 use std::collections::BTreeMap;
 
@@ -18,6 +21,8 @@ use schemars::JsonSchema;
 use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value};
+
+use crate::document;
 
 /// Name of the WebSocket subprotocol.
 pub const SUBPROTOCOL: &str = "gym-babble.v1";
@@ -118,10 +123,10 @@ pub struct Make {
     #[serde(default = "next_step")]
     pub autoreset: String,
     /// Name of a profile, or a map of what differs from one; the paper's if nil.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "document::value")]
     pub config: Value,
     /// Options of the environment by name.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "document::map")]
     pub options: Map<String, Value>,
     /// Threads that step them; as many as pay off if nil. Results do not depend on it.
     #[serde(default)]
@@ -165,6 +170,8 @@ pub struct Made {
     pub num_envs: usize,
     /// When an ended episode begins anew.
     pub autoreset: String,
+    /// Threads that step them.
+    pub threads: usize,
     /// The complete config.
     pub config: Value,
     /// All options by name.
@@ -185,7 +192,7 @@ pub struct Reset {
     #[serde(default)]
     pub mask: Option<Bytes>,
     /// A seed or nil for each environment (n), those of `gymnasium.Env.reset`: the same cases in
-    /// every language. Only the masked ones are seeded.
+    /// every language. Only the masked ones are seeded; in the first reset all are.
     #[serde(default)]
     pub seeds: Option<Vec<Option<u64>>>,
     /// What to ask of the cases of each environment (n), from now on: a map, empty to ask nothing

@@ -1,0 +1,8 @@
+//! The binary protocol of [`crate::wire`].
+
+mod execute;
+mod play;
+mod reply;
+pub mod request;
+
+pub use play::play;

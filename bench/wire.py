@@ -28,6 +28,7 @@ FLOATS = 64
 """Numbers in an observation of an environment that does nothing."""
 ACTION = [0.1, 0.1]
 START_S = 60.0
+PROGRAM = Path(__file__).resolve().parent.parent / "target" / "release" / "gym-babble-server"
 TICK = os.sysconf("SC_CLK_TCK")
 
 
@@ -55,12 +56,27 @@ def serving(command: list[str], **options: Any) -> Iterator[tuple[subprocess.Pop
         server.wait()
 
 
-def trips(ask: Callable[[], object], server: int, seconds: float, *, units: int = 1) -> Row:
-    """CPU and clock time of a unit [µs], and the median and the 99th percentile of round trips."""
-    _ask(ask, WARM_UP_S)
-    before = time.process_time() + cpu_of(server)
-    times = _ask(ask, seconds)
-    cpu = time.process_time() + cpu_of(server) - before
+def trips(
+    ask: Callable[[], object],
+    server: int,
+    seconds: float,
+    *,
+    units: int = 1,
+    restart: Callable[[], object] | None = None,
+    calls: int = 1_000_000_000,
+) -> Row:
+    """CPU and clock time of a unit [µs], and the median and the 99th percentile of round trips.
+
+    Args:
+        ask: A round trip.
+        server: The server's process.
+        seconds: Duration of the measurement.
+        units: Units of work in one round trip.
+        restart: Called before every `calls` round trips, outside the measured time.
+        calls: See `restart`.
+    """
+    _ask(ask, WARM_UP_S, restart, calls)
+    times, cpu = _ask(ask, seconds, restart, calls, server)
     each = 1e6 / (len(times) * units)
     p50, p99 = np.percentile(times, [50, 99])
     return {
@@ -71,14 +87,33 @@ def trips(ask: Callable[[], object], server: int, seconds: float, *, units: int 
     }
 
 
-def _ask(ask: Callable[[], object], seconds: float) -> list[float]:
-    times, now = [], time.perf_counter()
-    end = now + seconds
-    while now < end:
-        ask()
-        then, now = now, time.perf_counter()
-        times.append(now - then)
-    return times
+def _ask(
+    ask: Callable[[], object],
+    seconds: float,
+    restart: Callable[[], object] | None,
+    calls: int,
+    server: int | None = None,
+) -> tuple[list[float], float]:
+    """Times of round trips, and processor time of both processes [s]."""
+
+    def used() -> float:
+        return time.process_time() + (0.0 if server is None else cpu_of(server))
+
+    times: list[float] = []
+    cpu = clock = 0.0
+    while clock < seconds:
+        if restart is not None:
+            restart()
+        before, now = used(), time.perf_counter()
+        for _ in range(calls):
+            ask()
+            then, now = now, time.perf_counter()
+            times.append(now - then)
+            clock += now - then
+            if clock >= seconds:
+                break
+        cpu += used() - before
+    return times, cpu
 
 
 def cpu_of(process: int) -> float:
@@ -93,6 +128,11 @@ def free_port() -> int:
         probe.bind(("127.0.0.1", 0))
         port: int = probe.getsockname()[1]
     return port
+
+
+def program() -> list[str]:
+    """The command that starts our server."""
+    return [str(PROGRAM), "--port", "0"]
 
 
 def of_own(name: str, *arguments: str) -> list[str]:
@@ -133,10 +173,8 @@ def openenv_ours(seconds: float) -> Row:
     """OpenEnv's client and our server of `BabbleReach-v0`."""
     from openenv.core import GenericEnvClient
 
-    from bench.wire_ours import program
-
     with serving(program()) as (server, line):
-        url = line.rpartition(" ")[2]
+        url = f"http://{line.rpartition(' ')[2]}"
         with GenericEnvClient(base_url=url).sync() as client:
             client.reset()
 

@@ -8,6 +8,7 @@ use tracing_subscriber::EnvFilter;
 use tracing_subscriber::filter::LevelFilter;
 
 use crate::options::{Cli, Command, LogFormat};
+use crate::serve::Listening;
 
 pub mod admission;
 mod app;
@@ -21,7 +22,7 @@ pub mod metrics;
 pub mod options;
 mod page;
 pub mod protocol;
-mod serve;
+pub mod serve;
 pub mod server;
 pub mod session;
 pub mod table;
@@ -58,7 +59,14 @@ fn start(options: options::Options) -> std::io::Result<()> {
         .max_blocking_threads(options.limits.sessions.max(1))
         .enable_all()
         .build()?;
-    let served = runtime.block_on(serve::serve(options));
+    let served = runtime.block_on(async {
+        let stop = serve::asked_to_stop()?;
+        let listening = Listening::bind(options).await?;
+        println!("listening on {}", listening.address()?);
+        listening.serve(stop).await;
+        Ok(())
+    });
+    // A request that still runs had its time.
     runtime.shutdown_timeout(Duration::ZERO);
     served
 }

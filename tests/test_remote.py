@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import copy
 import pickle
+import subprocess
+import sys
 import warnings
 from threading import Thread
 
@@ -394,3 +396,13 @@ def test_agents_act_in_remote_environments(url):
                     break
         half = len(played) // 2
         assert_same(played[:half], played[half:])
+
+
+def test_without_its_libraries_the_error_names_the_extra():
+    for library in ("msgspec", "websockets"):
+        program = f"import sys; sys.modules[{library!r}] = None; import gym_babble.remote"
+        run = subprocess.run(
+            [sys.executable, "-c", program], check=False, capture_output=True, text=True
+        )
+        assert f"{library} is not installed" in run.stderr
+        assert "gym-babble[remote]" in run.stderr

@@ -415,10 +415,10 @@ def play_at_random(task, url, steps):
         env_id = "BabbleGraspFull-v0" if form.get("region") == "full" else FIRST_OF[task]
         return RemoteVectorEnv(env_id, num_envs, url=url, **form)
 
-    return soak(task, steps, rounds=1, num_envs=16, make=make)
+    return soak(task, steps, rounds=1, num_envs=8, make=make)
 
 
-@pytest.mark.parametrize("task", FIRST_OF)
+@pytest.mark.parametrize("task", ["reach", pytest.param("grasp", marks=pytest.mark.slow)])
 def test_random_play_finds_no_fault(task, server):
     tally = play_at_random(task, server.url, 1_500)
     assert tally.steps >= 1_500

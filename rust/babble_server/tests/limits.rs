@@ -170,6 +170,31 @@ async fn a_client_that_never_reads_is_dropped_and_holds_up_nobody() {
     running.ended().await;
 }
 
+#[tokio::test]
+async fn what_cannot_be_interrupted_is_short() {
+    let running = Running::start(&[]).await;
+    let slow = json!({"control_period_s": 0.001, "physics_steps": 1_000});
+    for (make, says) in [
+        (
+            json!({"env": "BabbleReachPattern-v0", "config": {"reach": slow}}),
+            "physics steps of one step = ",
+        ),
+        (
+            json!({
+                "env": "BabbleGrasp-v0",
+                "config": {"body": {"engine": "rapier"}},
+                "options": {"max_episode_steps": 1_001},
+            }),
+            "physics steps that loading a state repeats = 10010",
+        ),
+    ] {
+        let over = refused(&running, make).await;
+        assert!(over.message.contains(says), "{over:?}");
+    }
+    running.has_sessions(0).await;
+    running.ended().await;
+}
+
 /// What the server answers to bytes before it closes the connection.
 async fn answer(stream: &mut TcpStream) -> String {
     let mut bytes = Vec::new();

@@ -13,9 +13,10 @@ use axum::{Router, body};
 
 use crate::binary;
 use crate::connection::Connection;
+use crate::gate;
+use crate::page;
 use crate::server::{Peer, Server};
 use crate::wire::SUBPROTOCOL;
-use crate::{gate, page};
 
 /// Bytes that are read at once: most messages are shorter.
 const READ_BUFFER: usize = 16 << 10;

@@ -45,7 +45,8 @@ def _named(name: str, schema: dict[str, Any]) -> str:
 
 
 def _text(schema: dict[str, Any]) -> str:
-    return schema["description"].replace("\n", " ").replace("\\[", "[").replace("\\]", "]")
+    text: str = schema["description"]
+    return text.replace("\n", " ").replace("\\[", "[").replace("\\]", "]")
 
 
 def _fields(schema: dict[str, Any]) -> str:

@@ -73,7 +73,7 @@ fn requests() -> Result<()> {
     for (operation, body) in [
         (
             "make",
-            json!({"env": "BabbleReach-v0", "num_envs": 2, "config": {"body": {"arm": {"density_kg_m3": 900}}}, "options": {"obs": "goal", "control": "pattern"}}),
+            json!({"env": "BabbleReach-v0", "num_envs": 2, "config": {"body": {"arm": {"density_kg_m3": 900}}}, "options": {"obs": "retina", "record": true}}),
         ),
         (
             "reset",
@@ -86,7 +86,7 @@ fn requests() -> Result<()> {
         ("moments", json!({"env": 0})),
         (
             "render",
-            json!({"env": 0, "camera": "eye", "width": 9, "height": 7, "png": true}),
+            json!({"env": 0, "camera": "eye", "width": 32, "height": 32, "png": true}),
         ),
         (
             "scenarios",

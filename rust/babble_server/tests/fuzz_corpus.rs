@@ -15,8 +15,9 @@ fn the_corpus_is_read() {
     let mut done = 0;
     for entry in fs::read_dir(corpus).unwrap() {
         let path = entry.unwrap().path();
-        println!("{}", path.display());
-        done += usize::from(requests::request(&fs::read(&path).unwrap()));
+        let is_done = requests::request(&fs::read(&path).unwrap());
+        println!("{}: {is_done}", path.display());
+        done += usize::from(is_done);
     }
     assert!(done >= 13, "{done} are done");
 }

@@ -26,20 +26,27 @@ use crate::server::{Peer, Server, told};
 pub struct Listening {
     listener: TcpListener,
     server: Arc<Server>,
+    app: Router,
 }
 
 impl Listening {
     /// Takes the port.
     ///
     /// # Errors
-    /// An address that cannot be listened on; as [`Server::new`].
+    /// An address that cannot be listened on, options that the served environment does not have; as
+    /// [`Server::new`].
     pub async fn bind(options: Options) -> io::Result<Self> {
         let server = Arc::new(Server::new(options)?);
+        let app = app::routes(Arc::clone(&server)).map_err(io::Error::other)?;
         let address = SocketAddr::new(server.options.host, server.options.port);
         let listener = TcpListener::bind(address).await.map_err(|error| {
             io::Error::new(error.kind(), format!("cannot listen on {address}: {error}"))
         })?;
-        Ok(Self { listener, server })
+        Ok(Self {
+            listener,
+            server,
+            app,
+        })
     }
 
     /// Address that clients connect to.
@@ -58,8 +65,11 @@ impl Listening {
 
     /// Serves until `stop` ends, and then until the running requests are done.
     pub async fn serve(self, stop: impl Future<Output = ()>) {
-        let Self { listener, server } = self;
-        let app = app::routes(Arc::clone(&server));
+        let Self {
+            listener,
+            server,
+            app,
+        } = self;
         let sampler = tokio::spawn(sample(Arc::clone(&server)));
         tokio::pin!(stop);
         loop {

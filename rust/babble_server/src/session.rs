@@ -111,6 +111,19 @@ impl Session {
         self.batch.envs()
     }
 
+    /// What an observation consists of.
+    #[must_use]
+    pub fn obs(&self) -> &str {
+        let obs = self.options.get("obs");
+        obs.and_then(Value::as_str).unwrap_or_default()
+    }
+
+    /// Edge of the eye's image in an observation, if it has one \[pixel\].
+    #[must_use]
+    pub const fn retina(&self) -> Option<u32> {
+        self.retina
+    }
+
     /// Threads that step them.
     #[must_use]
     pub fn threads(&self) -> usize {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use axum::body::Bytes;
 use axum::extract::ws::Message;
@@ -16,16 +16,13 @@ use tokio::time::{sleep, timeout};
 use super::execute::execute;
 use super::reply::encode;
 use super::request::{Envelope, Request};
-use crate::connection::{Connection, End};
+use crate::connection::{Connection, End, QUICK};
 use crate::fault::{Fault, Kind};
 use crate::metrics::Metrics;
 use crate::server::{Server, told};
 use crate::session::Session;
 use crate::table::{Playing, SessionEntry};
 use crate::wire::{Made, Make, Nothing};
-
-/// A step that takes longer is not done in the thread that serves connections.
-const QUICK: Duration = Duration::from_millis(1);
 
 /// Operation of a message that has none, in counters.
 const UNKNOWN: &str = "unknown";

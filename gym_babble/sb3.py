@@ -54,6 +54,8 @@ class BabbleVecEnv(VecEnv):
     Args:
         env_id: A registered id.
         num_envs: Number of environments.
+        url: Address of a server that has the environments; here in this process if not given. Then
+            `env_kwargs` may have those of `gym_babble.remote.RemoteVectorEnv`, e.g. `token`.
         env_kwargs: Further arguments of the environment and of its batch, e.g. `threads=1`.
 
     Raises:
@@ -61,10 +63,15 @@ class BabbleVecEnv(VecEnv):
     """
 
     def __init__(
-        self, env_id: str = "BabbleReach-v0", num_envs: int = 1, **env_kwargs: Any
+        self,
+        env_id: str = "BabbleReach-v0",
+        num_envs: int = 1,
+        *,
+        url: str | None = None,
+        **env_kwargs: Any,
     ) -> None:
         env_kwargs.setdefault("autoreset_mode", AutoresetMode.SAME_STEP)
-        self.envs: Any = gymnasium.make_vec(env_id, num_envs=num_envs, **env_kwargs)
+        self.envs: Any = _batch(env_id, num_envs, url, env_kwargs)
         if self.envs.metadata["autoreset_mode"] is not AutoresetMode.SAME_STEP:
             raise ConfigError("autoreset_mode: stable-baselines3 needs AutoresetMode.SAME_STEP")
         super().__init__(
@@ -235,6 +242,15 @@ class ProgressBar(BaseCallback):
 
     def _on_training_end(self) -> None:
         self._bar = iter(())
+
+
+def _batch(env_id: str, num_envs: int, url: str | None, env_kwargs: dict[str, Any]) -> Any:
+    """The batch here, or on a server."""
+    if url is None:
+        return gymnasium.make_vec(env_id, num_envs=num_envs, **env_kwargs)
+    from gym_babble.remote import RemoteVectorEnv  # noqa: PLC0415 - it needs another extra
+
+    return RemoteVectorEnv(env_id, num_envs, url=url, **env_kwargs)
 
 
 def _as_scenario(options: dict[str, Any]) -> dict[str, Any]:

@@ -24,7 +24,7 @@ from gym_babble.errors import ActionError, ScenarioError
 from gym_babble.progress import track
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from gymnasium.vector import VectorEnv
 
@@ -168,12 +168,19 @@ def memory_mb() -> float:
 
 
 def soak(
-    task: str, steps: int, *, rounds: int = 10, num_envs: int = 64, show: bool = False
+    task: str,
+    steps: int,
+    *,
+    rounds: int = 10,
+    num_envs: int = 64,
+    show: bool = False,
+    make: Callable[..., VectorEnv[Any, Any, Any]] | None = None,
 ) -> Tally:
-    """Plays at least so many steps of a task in all forms.
+    """Plays at least so many steps of a task in all forms, in batches that `make` makes.
 
     Memory is compared between the first and the last round through the forms.
     """
+    make = make or BATCHES[task]
     all_forms = forms(task)
     whole = rounds * sum(share for _, share in all_forms)
     tally = Tally()
@@ -181,8 +188,9 @@ def soak(
     def turns() -> Iterator[int]:
         for turn, (i, (form, share)) in product(range(rounds), enumerate(all_forms)):
             before = tally.steps
-            envs = BATCHES[task](num_envs, threads=1, **form)
+            envs = make(num_envs, threads=1, **form)
             Soak(envs, 1000 * turn + i, tally).play(ceil(steps * share / whole))
+            envs.close()
             if i + 1 == len(all_forms):
                 tally.memory_mb.append(memory_mb())
             yield tally.steps - before

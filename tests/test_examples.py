@@ -100,8 +100,8 @@ RUNS = {
     ),
     "sac_her.py": ("--steps 4000 --cases 20", r"success 0\.\d+ \[0\.\d+, .+\]"),
 }
-ELSEWHERE = {"rllib_ppo.py"}
-"""Has its own environment: `make frameworks`."""
+ELSEWHERE = {"rllib_ppo.py", "openenv_client.py"}
+"""One has an environment of its own (`make frameworks`), one needs a server (test_openenv.py)."""
 
 # What a run prints depends on its bits, and two threads of PyTorch on a busy machine are slow.
 torch.set_num_threads(1)

@@ -6,8 +6,10 @@ import shlex
 import warnings
 
 import pytest
+from serving import served
 
 from gym_babble.cli import main
+from gym_babble.remote import DEFAULT_URL
 
 FENCED = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 PAGES = (
@@ -27,6 +29,8 @@ PAGES = (
 
 FRAMEWORKS = "docs/frameworks.md"
 """Runs by section: here what needs nothing more, the others by `make frameworks`."""
+SERVED = "docs/server.md"
+"""Runs with a server, whose address replaces the default one."""
 HERE = ("stable-baselines3",)
 IN_TEST_EXAMPLES = ("CleanRL's style",)
 
@@ -45,7 +49,7 @@ def small(code):
 def test_every_page_with_python_is_run(repository):
     pages = [repository / "README.md", *(repository / "docs").glob("*.md")]
     found = [str(path.relative_to(repository)) for path in pages]
-    runs = {*PAGES, FRAMEWORKS}
+    runs = {*PAGES, FRAMEWORKS, SERVED}
     assert {page for page in found if blocks(repository, page, "python")} == runs
 
 
@@ -82,6 +86,14 @@ def test_the_python_of_a_page_runs(repository, page, monkeypatch, tmp_path):
         warnings.simplefilter("error")
         for code in blocks(repository, page, "python"):
             exec(compile(small(code), page, "exec"), names)  # noqa: S102 - our own docs
+
+
+def test_the_python_of_the_servers_page_runs(repository):
+    with served() as server:
+        for code in blocks(repository, SERVED, "python"):
+            assert DEFAULT_URL in code
+            here = code.replace(DEFAULT_URL, server.url)
+            exec(compile(here, SERVED, "exec"), {"__name__": "snippet"})  # noqa: S102 - our own docs
 
 
 def shell_lines(repository):

@@ -18,10 +18,16 @@ if TYPE_CHECKING:
 
     from gym_babble.envs.interface import Interface
 
-__all__ = ["BatchMember"]
+__all__ = ["BatchMember", "check_state"]
 
 MOST_KEPT = 1_000
 """Ended episodes whose frames wait to be fetched; of earlier ones they are dropped."""
+
+
+def check_state(state: Any) -> None:
+    """Raises `SnapshotError` if a state is not made of bytes."""
+    if not isinstance(state, bytes):
+        raise SnapshotError(f"state is a {type(state).__name__}, expected bytes")
 
 
 class BatchMember:
@@ -55,8 +61,7 @@ class BatchMember:
         Raises:
             SnapshotError: The bytes are not such a state; the environment is as it was.
         """
-        if not isinstance(state, bytes):
-            raise SnapshotError(f"state is a {type(state).__name__}, expected bytes")
+        check_state(state)
         self._batch.load(self._i, state)
         self.go_on()
 

@@ -165,7 +165,12 @@ class Channel:
             self._protocol.receive_data(data)
         else:
             self._protocol.receive_eof()
-        self._flush()
+        try:
+            self._flush()
+        except OSError:
+            # A server that has ended the connection no longer hears the answer.
+            if self._protocol.state is State.OPEN:
+                raise
 
     def _flush(self) -> None:
         """Sends what the protocol has to say: messages, and answers to pings and closes."""

@@ -10,7 +10,7 @@ from gymnasium.vector import AutoresetMode
 from gym_babble import _core
 from gym_babble.checks import check_number, check_threads, shown
 from gym_babble.envs import BabbleEnv, BabbleVectorEnv
-from gym_babble.envs.member import BatchMember
+from gym_babble.envs.member import BatchMember, check_state
 from gym_babble.envs.registry import environment
 from gym_babble.errors import ConfigError, ServerError
 from gym_babble.remote.batch import RemoteBatch
@@ -187,6 +187,8 @@ class RemoteVectorEnv(_Remote, BabbleVectorEnv):
         """
         if not isinstance(states, list | tuple) or len(states) != self.num_envs:
             raise ConfigError(f"states = {shown(states)} is not a list of {self.num_envs} states")
+        for state in states:
+            check_state(state)
         with self._batch:
             self._batch.load_all(states)
             for member in self._members:

@@ -134,6 +134,11 @@ class Session:
             self._resume(deadline)
         number = self._last + 1
         message = msgpack.encode([number, operation, body])
+        most = self.made["limits"]["message_bytes"]
+        if len(message) > most:
+            raise LimitError(
+                f"{operation!r} has {len(message)} bytes: this server allows at most {most}"
+            )
         while True:
             try:
                 reply = self._told(message, deadline)
@@ -141,9 +146,9 @@ class Session:
             except TimeoutError:
                 raise
             except (OSError, BrokenChannelError) as error:
+                self._drop()
                 self._heed(error)
                 logger.warning("%s: %s; connecting again", self._url, error)
-                self._drop()
             self._resume(deadline)
             if self._last not in (number - 1, number):
                 raise self._lose("another client has used the session")
@@ -243,8 +248,8 @@ class Session:
                     # The server keeps the session for a while only. If this fails, the next
                     # request tries again and reports.
                     with suppress(LimitError, ServerError):
-                        self._heed(error)
                         self._drop()
+                        self._heed(error)
                         self._resume(time.monotonic() + ATTEND_S)
 
     def close(self) -> None:

@@ -1,6 +1,7 @@
 //! Writes the inputs that fuzzing begins with into `corpus`, for use after a format has changed:
 //! `cargo run --bin seeds`.
 
+use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
 use std::sync::Arc;
@@ -15,6 +16,7 @@ use babble_env::{
 };
 use babble_fuzz::snapshots::{body_of, grasping, reaching};
 use safetensors::SafeTensors;
+use serde_json::json;
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
@@ -56,7 +58,69 @@ fn main() -> Result<()> {
     }
     let small = "profile = \"icub\"\n[body.arm]\nhalf_width_m = 0.012\n[body.joints.elbow]\nupper_deg = 99\n";
     put("config", "overrides", small.as_bytes())?;
-    agents()
+    agents()?;
+    requests()
+}
+
+/// A request of each operation.
+fn requests() -> Result<()> {
+    let env = begun(
+        ReachTask::new(Config::profile("paper")?, ReachOptions::default())?,
+        None,
+    )?;
+    let state = serde_bytes::ByteBuf::from(played(env, 3, 0.3)?);
+    let number = [0_u8; 16];
+    for (operation, body) in [
+        (
+            "make",
+            json!({"env": "BabbleReach-v0", "num_envs": 2, "config": {"body": {"arm": {"density_kg_m3": 900}}}, "options": {"obs": "retina", "record": true}}),
+        ),
+        (
+            "reset",
+            json!({"seeds": [1, null], "cases": [{"target": [0.1, 0.3], "obstacle": null}, {}]}),
+        ),
+        ("save", json!({"envs": [1], "ended": false})),
+        ("hash", json!({"env": 1})),
+        ("case", json!({"env": 0})),
+        ("trail", json!({"env": 0})),
+        ("moments", json!({"env": 0})),
+        (
+            "render",
+            json!({"env": 0, "camera": "eye", "width": 32, "height": 32, "png": true}),
+        ),
+        (
+            "scenarios",
+            json!({"protocol": "table1", "n": 2, "seed": 3}),
+        ),
+        ("close", json!({})),
+    ] {
+        put(
+            "request",
+            operation,
+            &rmp_serde::to_vec_named(&(1, operation, body))?,
+        )?;
+    }
+    let load = rmp_serde::to_vec_named(&(
+        1,
+        "load",
+        [("states", [Some(state), None])]
+            .into_iter()
+            .collect::<BTreeMap<_, _>>(),
+    ))?;
+    put("request", "load", &load)?;
+    let binary = serde_bytes::Bytes::new(&number);
+    for (operation, fields) in [
+        ("step", &["actions"][..]),
+        ("goal_reward", &["achieved", "desired"]),
+    ] {
+        let body: BTreeMap<_, _> = fields.iter().map(|&field| (field, binary)).collect();
+        put(
+            "request",
+            operation,
+            &rmp_serde::to_vec_named(&(1, operation, body))?,
+        )?;
+    }
+    Ok(())
 }
 
 fn begun<T: Task>(task: T, request: Option<T::Request>) -> Result<Batch<T>> {

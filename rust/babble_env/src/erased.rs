@@ -43,6 +43,12 @@ pub trait AnyTask: Any + fmt::Debug + Send + Sync {
     /// Whether one step takes longer than handing it to a thread.
     fn has_long_steps(&self) -> bool;
 
+    /// As [`Task::most_physics_steps`].
+    fn most_physics_steps(&self) -> u64;
+
+    /// As [`Task::most_replayed_steps`].
+    fn most_replayed_steps(&self) -> u64;
+
     /// As [`Task::goal_reward`].
     fn goal_reward(&self, achieved: &[f32], desired: &[f32]) -> f64;
 
@@ -105,6 +111,14 @@ impl<T: Task> AnyTask for T {
 
     fn has_long_steps(&self) -> bool {
         self.min_per_thread() == 1
+    }
+
+    fn most_physics_steps(&self) -> u64 {
+        Task::most_physics_steps(self)
+    }
+
+    fn most_replayed_steps(&self) -> u64 {
+        Task::most_replayed_steps(self)
     }
 
     fn goal_reward(&self, achieved: &[f32], desired: &[f32]) -> f64 {

@@ -47,6 +47,8 @@ pub struct Spec {
     pub action: Entry,
     /// Names of the reward terms, in their order; at most [`crate::task::MAX_TERMS`].
     pub reward_terms: &'static [&'static str],
+    /// Least and greatest reward of one step.
+    pub reward_bounds: [f64; 2],
     /// Names of what is true or false of an episode, in their order; at most
     /// [`crate::task::MAX_FACTS`].
     pub facts: &'static [&'static str],

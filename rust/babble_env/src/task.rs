@@ -53,6 +53,16 @@ pub trait Task: fmt::Debug + Send + Sync + Sized + 'static {
     /// Environments that a thread steps at least: their steps must outlast handing them over.
     fn min_per_thread(&self) -> usize;
 
+    /// Physics steps that one step takes at most, or one try to draw a case.
+    fn most_physics_steps(&self) -> u64 {
+        1
+    }
+
+    /// Physics steps that a state repeats when it is loaded, at most.
+    fn most_replayed_steps(&self) -> u64 {
+        0
+    }
+
     /// Numbers in an action.
     fn action_len(&self) -> usize;
 

@@ -105,6 +105,7 @@ impl Task for Slow {
             goals: goals.into(),
             action: entry("action", vec![]),
             reward_terms: &[],
+            reward_bounds: [0.0, 1.0],
             facts: &[],
             measures: &[],
             outcomes: vec![],

@@ -8,7 +8,10 @@ use pyo3::prelude::*;
 #[pyfunction]
 pub(crate) fn serve(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     let name = OsString::from("gym-babble serve");
-    py.detach(|| babble_server::run(std::iter::once(name).chain(arguments)))
+    let code = py.detach(|| babble_server::run(std::iter::once(name).chain(arguments)));
+    // The server was stopped by Ctrl-C, of which Python has heard too.
+    drop(py.check_signals());
+    code
 }
 
 /// The binary protocol, as JSON.

@@ -2,33 +2,36 @@
 
 use std::sync::Arc;
 
+use axum::Router;
 use axum::extract::ws::WebSocketUpgrade;
 use axum::extract::{Extension, State};
-use axum::http::StatusCode;
-use axum::http::header::CONTENT_TYPE;
+use axum::http::header::{CONTENT_TYPE, SEC_WEBSOCKET_PROTOCOL};
+use axum::http::{HeaderMap, StatusCode};
 use axum::middleware::from_fn_with_state;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
-use axum::{Router, body};
 
-use crate::binary;
 use crate::connection::Connection;
+use crate::fault::Fault;
 use crate::server::{Peer, Server};
 use crate::wire::SUBPROTOCOL;
-use crate::{gate, page};
+use crate::{binary, gate, openenv, page};
 
 /// Bytes that are read at once: most messages are shorter.
 const READ_BUFFER: usize = 16 << 10;
 
 /// All routes.
-pub(crate) fn routes(server: Arc<Server>) -> Router {
-    Router::new()
+///
+/// # Errors
+/// [`Fault`] for options that the served environment does not have.
+pub(crate) fn routes(server: Arc<Server>) -> Result<Router, Fault> {
+    Ok(openenv::routes(&server)?
         .route("/", get(page::status))
         .route("/status.css", get(page::style))
         .route("/metrics", get(metrics))
         .route("/ws", get(web_socket))
         .layer(from_fn_with_state(Arc::clone(&server), gate::check))
-        .with_state(server)
+        .with_state(server))
 }
 
 /// For Prometheus.
@@ -38,10 +41,12 @@ async fn metrics(State(server): State<Arc<Server>>) -> impl IntoResponse {
     ([(CONTENT_TYPE, kind)], text)
 }
 
-/// The binary protocol for clients that ask for its subprotocol.
+/// The binary protocol for clients that ask for its subprotocol, and OpenEnv's for those that ask for
+/// none.
 async fn web_socket(
     State(server): State<Arc<Server>>,
     Extension(peer): Extension<Peer>,
+    headers: HeaderMap,
     upgrade: WebSocketUpgrade,
 ) -> Response {
     let longest = server.limits().message_bytes;
@@ -50,13 +55,17 @@ async fn web_socket(
         .read_buffer_size(READ_BUFFER)
         .max_message_size(longest)
         .max_frame_size(longest);
-    if upgrade.selected_protocol().is_none() {
-        // Here OpenEnv's JSON will be played.
-        let body = body::Body::from("this WebSocket has the subprotocol gym-babble.v1");
-        return (StatusCode::BAD_REQUEST, body).into_response();
+    let is_binary = upgrade.selected_protocol().is_some();
+    if !is_binary && headers.contains_key(SEC_WEBSOCKET_PROTOCOL) {
+        let message = format!("the only subprotocol is {SUBPROTOCOL}; OpenEnv's JSON has none\n");
+        return (StatusCode::BAD_REQUEST, message).into_response();
     }
-    upgrade.on_upgrade(move |socket| {
+    upgrade.on_upgrade(move |socket| async move {
         let connection = Connection::new(socket, peer, &server);
-        binary::play(connection, server)
+        if is_binary {
+            binary::play(connection, server).await;
+        } else {
+            openenv::play(connection, server).await;
+        }
     })
 }

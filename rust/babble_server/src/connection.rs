@@ -10,6 +10,8 @@ use tokio::time::{Interval, MissedTickBehavior, interval_at, timeout};
 
 use crate::server::{Peer, Server, told};
 
+/// Work that takes longer is not done in the thread that serves connections.
+pub(crate) const QUICK: Duration = Duration::from_millis(1);
 /// Pings without an answer after which a client counts as gone.
 pub(crate) const UNANSWERED: u32 = 2;
 

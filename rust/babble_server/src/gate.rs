@@ -109,7 +109,7 @@ fn is_allowed(origin: &HeaderValue, host: Option<&str>, allowed: &[String]) -> b
 
 #[cfg(test)]
 mod tests {
-    use super::{is_allowed, is_loopback};
+    use crate::gate::{is_allowed, is_loopback};
     use crate::token::origin;
     use axum::http::HeaderValue;
 

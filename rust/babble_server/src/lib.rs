@@ -1,13 +1,15 @@
 #![doc = include_str!("../README.md")]
 
 use std::ffi::OsString;
+use std::io::{self, Write};
 use std::time::Duration;
 
 use clap::Parser;
 use tracing_subscriber::EnvFilter;
 use tracing_subscriber::filter::LevelFilter;
 
-use crate::options::{Cli, Command, LogFormat};
+use crate::options::{Cli, Command, LogFormat, Options};
+use crate::serve::Listening;
 
 pub mod admission;
 mod app;
@@ -16,12 +18,14 @@ pub mod connection;
 mod document;
 pub mod fault;
 mod gate;
+mod health;
 pub mod limits;
 pub mod metrics;
+pub mod openenv;
 pub mod options;
 mod page;
 pub mod protocol;
-mod serve;
+pub mod serve;
 pub mod server;
 pub mod session;
 pub mod table;
@@ -37,28 +41,41 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
             return error.exit_code() as u8;
         }
     };
-    match cli.command {
-        Some(Command::Protocol) => {
-            println!("{}", protocol::json());
-            0
+    let done = match cli.command {
+        Some(Command::Protocol) => print(&protocol::json()),
+        Some(Command::OpenenvYaml) => openenv::manifest(&cli.options.served)
+            .map_err(io::Error::other)
+            .and_then(|manifest| print(&manifest)),
+        Some(Command::Health) => health::ask(&cli.options),
+        None => start(cli.options),
+    };
+    match done {
+        Ok(()) => 0,
+        Err(error) => {
+            eprintln!("error: {error}");
+            1
         }
-        None => match start(cli.options) {
-            Ok(()) => 0,
-            Err(error) => {
-                eprintln!("error: {error}");
-                1
-            }
-        },
     }
 }
 
-fn start(options: options::Options) -> std::io::Result<()> {
+fn print(document: &str) -> io::Result<()> {
+    writeln!(io::stdout(), "{}", document.trim_end())
+}
+
+fn start(options: Options) -> io::Result<()> {
     log(options.log);
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .max_blocking_threads(options.limits.sessions.max(1))
         .enable_all()
         .build()?;
-    let served = runtime.block_on(serve::serve(options));
+    let served = runtime.block_on(async {
+        let stop = serve::asked_to_stop()?;
+        let listening = Listening::bind(options).await?;
+        println!("listening on {}", listening.address()?);
+        listening.serve(stop).await;
+        Ok(())
+    });
+    // A request that still runs had its time.
     runtime.shutdown_timeout(Duration::ZERO);
     served
 }

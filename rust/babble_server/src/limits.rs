@@ -21,7 +21,7 @@ pub struct Limits {
     #[arg(long, default_value_t = 4_096)]
     pub envs_per_session: usize,
     /// Environments of all sessions.
-    #[arg(long, default_value_t = 65_536)]
+    #[arg(long, default_value_t = 16_384)]
     pub envs: usize,
     /// Threads that step the environments of one session.
     #[arg(long, default_value_t = processors())]

@@ -7,6 +7,7 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::limits::{Limits, seconds};
+use crate::openenv::Served;
 use crate::token;
 
 /// The environments of gym-babble over a network.
@@ -26,6 +27,10 @@ pub struct Cli {
 pub enum Command {
     /// Print the binary protocol as JSON schemas.
     Protocol,
+    /// Print the openenv.yaml of the environment that OpenEnv's clients get.
+    OpenenvYaml,
+    /// Ask a running server at this host and port whether it can be used; exit code 0 if so.
+    Health,
 }
 
 /// How to serve.
@@ -52,6 +57,9 @@ pub struct Options {
     /// What clients may ask for.
     #[command(flatten)]
     pub limits: Limits,
+    /// What OpenEnv's clients get.
+    #[command(flatten)]
+    pub served: Served,
 }
 
 /// Form of the log.

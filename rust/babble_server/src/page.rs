@@ -93,7 +93,7 @@ fn table(html: &mut String, sessions: &[Arc<Admitted>]) -> fmt::Result {
         return Ok(());
     }
     html.push_str(
-        "<table><thead><tr><th>Session<th>Client<th>Environment<th>Environments<th>Steps<th>Errors\
+        "<div class=wide><table><thead><tr><th>Session<th>Client<th>Environment<th>Count<th>Steps<th>Errors\
          <th>Age<th>Connected<tbody>",
     );
     for session in sessions.iter().take(ROWS) {
@@ -111,7 +111,7 @@ fn table(html: &mut String, sessions: &[Arc<Admitted>]) -> fmt::Result {
             if connected { "yes" } else { "no" },
         )?;
     }
-    html.push_str("</table>");
+    html.push_str("</table></div>");
     match sessions.len().saturating_sub(ROWS) {
         0 => Ok(()),
         more => write!(html, "<p>And {more} more.</p>"),

@@ -21,42 +21,80 @@ use crate::connection::UNANSWERED;
 use crate::options::Options;
 use crate::server::{Peer, Server, told};
 
-/// Serves until the process is asked to stop.
-///
-/// # Errors
-/// An address that cannot be listened on.
-pub(crate) async fn serve(options: Options) -> io::Result<()> {
-    let server = Arc::new(Server::new(options)?);
-    let options = &server.options;
-    let listener = TcpListener::bind(SocketAddr::new(options.host, options.port)).await?;
-    println!("listening on {}", listener.local_addr()?);
-    let app = app::routes(Arc::clone(&server));
-    let sampler = tokio::spawn(sample(Arc::clone(&server)));
-    let stop = asked_to_stop()?;
-    tokio::pin!(stop);
-    loop {
-        tokio::select! {
-            accepted = accept(&listener, &server) => match accepted {
-                Ok((stream, peer)) => {
-                    tokio::spawn(connect(stream, peer, app.clone(), Arc::clone(&server)));
-                }
-                // Out of descriptors, or a connection that broke at once: go on.
-                Err(error) => {
-                    tracing::warn!(%error, "cannot accept a connection");
-                    sleep(Duration::from_millis(50)).await;
-                }
-            },
-            () = &mut stop => break,
-        }
+/// A server that has its port.
+#[derive(Debug)]
+pub struct Listening {
+    listener: TcpListener,
+    server: Arc<Server>,
+    app: Router,
+}
+
+impl Listening {
+    /// Takes the port.
+    ///
+    /// # Errors
+    /// An address that cannot be listened on, options that the served environment does not have; as
+    /// [`Server::new`].
+    pub async fn bind(options: Options) -> io::Result<Self> {
+        let server = Arc::new(Server::new(options)?);
+        let app = app::routes(Arc::clone(&server)).map_err(io::Error::other)?;
+        let address = SocketAddr::new(server.options.host, server.options.port);
+        let listener = TcpListener::bind(address).await.map_err(|error| {
+            io::Error::new(error.kind(), format!("cannot listen on {address}: {error}"))
+        })?;
+        Ok(Self {
+            listener,
+            server,
+            app,
+        })
     }
-    drop(listener);
-    sampler.abort();
-    let (sessions, _) = server.admissions.counts();
-    tracing::info!(sessions, "stopping");
-    server.draining.send_replace(true);
-    let drained = timeout(options.drain_time, server.drained()).await.is_ok();
-    tracing::info!(drained, "stopped");
-    Ok(())
+
+    /// Address that clients connect to.
+    ///
+    /// # Errors
+    /// The system does not say.
+    pub fn address(&self) -> io::Result<SocketAddr> {
+        self.listener.local_addr()
+    }
+
+    /// What all connections share.
+    #[must_use]
+    pub const fn server(&self) -> &Arc<Server> {
+        &self.server
+    }
+
+    /// Serves until `stop` ends, and then until the running requests are done.
+    pub async fn serve(self, stop: impl Future<Output = ()>) {
+        let Self {
+            listener,
+            server,
+            app,
+        } = self;
+        let sampler = tokio::spawn(sample(Arc::clone(&server)));
+        tokio::pin!(stop);
+        loop {
+            tokio::select! {
+                accepted = accept(&listener, &server) => match accepted {
+                    Ok((stream, peer)) => {
+                        tokio::spawn(connect(stream, peer, app.clone(), Arc::clone(&server)));
+                    }
+                    // Out of descriptors, or a connection that broke at once: go on.
+                    Err(error) => {
+                        tracing::warn!(%error, "cannot accept a connection");
+                        sleep(Duration::from_millis(50)).await;
+                    }
+                },
+                () = &mut stop => break,
+            }
+        }
+        drop(listener);
+        sampler.abort();
+        let (sessions, _) = server.admissions.counts();
+        tracing::info!(sessions, "stopping");
+        server.draining.send_replace(true);
+        let drained = timeout(server.options.drain_time, server.drained()).await;
+        tracing::info!(drained = drained.is_ok(), "stopped");
+    }
 }
 
 /// Keeps the counters of each second, for the rates of the status page.
@@ -118,7 +156,7 @@ async fn connect(stream: TcpStream, peer: Peer, app: Router, server: Arc<Server>
 }
 
 /// Ends when the process gets SIGTERM or SIGINT.
-fn asked_to_stop() -> io::Result<impl Future<Output = ()>> {
+pub(crate) fn asked_to_stop() -> io::Result<impl Future<Output = ()>> {
     #[cfg(unix)]
     {
         use tokio::signal::unix::{SignalKind, signal};

@@ -23,6 +23,11 @@ use crate::wire::{
     Bytes, CaseMap, GoalReward, Make, Raw, Render, Reset, Save, Scenarios, Shown, Stepped,
 };
 
+/// Physics steps that one step of an environment may take, which nothing interrupts: about 0.1 s.
+const PHYSICS_STEPS: u64 = 100_000;
+/// Physics steps of rapier that loading a state may repeat, which nothing interrupts: about 1 s.
+const REPLAYED_STEPS: u64 = 10_000;
+
 thread_local! {
     /// When the request that runs in this thread has had its time.
     static DEADLINE: Cell<Option<Instant>> = const { Cell::new(None) };
@@ -65,6 +70,7 @@ impl Session {
         let n = asked.num_envs;
         let (entry, row) = registry::environment(&asked.env)?;
         let task = registry::make(&asked.env, read_config(&asked.config)?, &asked.options)?;
+        check_steps(&*task)?;
         let options = all_options(entry, row.presets, &asked.options);
         let autoreset: Autoreset = asked.autoreset.parse()?;
         let retina = (options.get("obs").and_then(Value::as_str) == Some("retina"))
@@ -103,6 +109,19 @@ impl Session {
     #[must_use]
     pub fn envs(&self) -> usize {
         self.batch.envs()
+    }
+
+    /// What an observation consists of.
+    #[must_use]
+    pub fn obs(&self) -> &str {
+        let obs = self.options.get("obs");
+        obs.and_then(Value::as_str).unwrap_or_default()
+    }
+
+    /// Edge of the eye's image in an observation, if it has one \[pixel\].
+    #[must_use]
+    pub const fn retina(&self) -> Option<u32> {
+        self.retina
     }
 
     /// Threads that step them.
@@ -284,23 +303,36 @@ impl Session {
     /// [`Fault`] for a state that is refused; all environments are as they were.
     pub fn load(&mut self, states: &[Option<Bytes>]) -> Result<(), Fault> {
         check_length("states", states.len(), self.envs())?;
-        let mut before: Vec<(usize, Vec<u8>)> = Vec::new();
+        let mut before = Vec::new();
+        let loaded = self.load_each(states, &mut before);
+        if loaded.is_err() {
+            for (i, was) in before {
+                self.batch.load(i, &was)?;
+            }
+        }
+        self.seeded |= loaded.is_ok() && states.iter().all(Option::is_some);
+        loaded
+    }
+
+    /// Loads states and keeps those of before.
+    fn load_each(
+        &mut self,
+        states: &[Option<Bytes>],
+        before: &mut Vec<(usize, Vec<u8>)>,
+    ) -> Result<(), Fault> {
         for (i, state) in states.iter().enumerate() {
             let Some(Raw(state)) = state else { continue };
-            let was = self.batch.save(i)?;
-            if let Err(error) = self.batch.load(i, state) {
-                for (i, was) in before {
-                    self.batch.load(i, &was)?;
-                }
-                let fault = Fault::from(error);
-                return Err(Fault::new(
-                    fault.kind,
-                    format!("states[{i}]: {}", fault.message),
-                ));
+            if is_late() {
+                let message = "loading took longer than this server allows; nothing was loaded";
+                return Err(Fault::new(Kind::LimitError, message));
             }
+            let was = self.batch.save(i)?;
+            self.batch.load(i, state).map_err(|error| {
+                let Fault { kind, message } = error.into();
+                Fault::new(kind, format!("states[{i}]: {message}"))
+            })?;
             before.push((i, was));
         }
-        self.seeded |= states.iter().all(Option::is_some);
         Ok(())
     }
 
@@ -422,6 +454,27 @@ impl Session {
     pub fn record(&self, i: usize) -> Option<&Record> {
         self.batch.record(i)
     }
+}
+
+/// Refuses what would take long and cannot be interrupted.
+fn check_steps(task: &dyn AnyTask) -> Result<(), Fault> {
+    for (what, steps, most) in [
+        (
+            "physics steps of one step",
+            task.most_physics_steps(),
+            PHYSICS_STEPS,
+        ),
+        (
+            "physics steps that loading a state repeats",
+            task.most_replayed_steps(),
+            REPLAYED_STEPS,
+        ),
+    ] {
+        if steps > most {
+            return Err(Fault::limit(what, steps, most));
+        }
+    }
+    Ok(())
 }
 
 /// All options of an environment by name, with the defaults of those not given.

@@ -84,7 +84,7 @@ pub(crate) fn origin(text: &str) -> Result<String, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Token, origin};
+    use crate::token::{Token, origin};
     use axum::http::header::AUTHORIZATION;
     use axum::http::{HeaderMap, HeaderValue};
 

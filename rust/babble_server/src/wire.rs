@@ -110,16 +110,17 @@ impl JsonSchema for CaseMap {
     }
 }
 
-/// `make`: begins the session with a batch of environments.
+/// Body of `make`.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Make {
     /// Id of the environments, as in `BabbleReach-v0`.
     pub env: String,
-    /// How many, n below; 1 if nil.
+    /// How many, called n below; 1 by default.
     #[serde(default = "one")]
     pub num_envs: usize,
-    /// When an ended episode begins anew: `NextStep`, `SameStep` or `Disabled`, as in Gymnasium.
+    /// When an ended episode begins anew: `NextStep` (the default), `SameStep` or `Disabled`, as in
+    /// Gymnasium.
     #[serde(default = "next_step")]
     pub autoreset: String,
     /// Name of a profile, or a map of what differs from one; the paper's if nil.
@@ -141,7 +142,7 @@ fn next_step() -> String {
     Autoreset::NextStep.to_string()
 }
 
-/// `resume`: takes up a session whose connection broke, or is still held by a client that is gone.
+/// Body of `resume`.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Resume {
@@ -184,7 +185,7 @@ pub struct Made {
     pub limits: BTreeMap<&'static str, u64>,
 }
 
-/// `reset`: begins new episodes.
+/// Body of `reset`.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Reset {
@@ -195,13 +196,13 @@ pub struct Reset {
     /// every language. Only the masked ones are seeded; in the first reset all are.
     #[serde(default)]
     pub seeds: Option<Vec<Option<u64>>>,
-    /// What to ask of the cases of each environment (n), from now on: a map, empty to ask nothing
-    /// more; nil leaves it as it is.
+    /// Parts that the cases of each environment (n) must have from now on; an empty map for none, nil
+    /// for those of before.
     #[serde(default)]
     pub cases: Option<Vec<Option<CaseMap>>>,
 }
 
-/// `step`: one step of all environments.
+/// Body of `step`.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Step {
@@ -242,13 +243,13 @@ pub struct Stepped {
     /// What all environments show (m = n). Where an episode began anew, reward, terms and ends are those
     /// of the step, and all else is of the new episode.
     pub now: Shown,
-    /// Environments that began anew by themselves within the step (m).
+    /// Environments whose episodes ended and that began anew within the step (m).
     pub ended: U32s,
     /// What their ended episodes showed last (m); nil if there are none.
     pub last: Option<Shown>,
 }
 
-/// `save`: states, from which `load` continues bit for bit.
+/// Body of `save`.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Save {
@@ -267,7 +268,7 @@ pub struct Saved {
     pub states: Vec<Option<Bytes>>,
 }
 
-/// `load`: continues environments from states; all of them or, after an error, none.
+/// Body of `load`.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Load {
@@ -275,7 +276,7 @@ pub struct Load {
     pub states: Vec<Option<Bytes>>,
 }
 
-/// `hash`, `case`, `trail` and `moments`: what is asked of one environment.
+/// Body of `hash`, `case`, `trail` and `moments`.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Of {
@@ -300,7 +301,7 @@ pub struct Case {
 /// Reply to `trail`.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Trail {
-    /// The recorded way of the hand (k, 2) \[m\].
+    /// The recorded path of the hand (k, 2) \[m\].
     pub trail: F64s,
 }
 
@@ -311,7 +312,7 @@ pub struct Moments {
     pub moments: usize,
 }
 
-/// `render`: a picture of an environment.
+/// Body of `render`.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Render {
@@ -347,7 +348,7 @@ fn bytes_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
     Bytes::json_schema(generator)
 }
 
-/// `goal_reward`: rewards of the goal form, for hindsight replay.
+/// Body of `goal_reward`.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GoalReward {
@@ -364,7 +365,7 @@ pub struct GoalRewards {
     pub reward: F64s,
 }
 
-/// `scenarios`: the test cases of a protocol.
+/// Body of `scenarios`.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Scenarios {
@@ -387,7 +388,7 @@ pub struct Cases {
     pub cases: Vec<Option<CaseMap>>,
 }
 
-/// `close`: ends the session.
+/// An empty map.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Nothing {}

@@ -9,7 +9,7 @@ use crate::session::Session;
 use crate::wire::{Case, Cases, GoalRewards, Hash, Moments, Nothing, Picture, Raw, Saved, Trail};
 
 /// Plays a request; the reply as bytes, and the error in it.
-pub(super) fn execute(session: &mut Session, id: u64, request: Request) -> (Bytes, Option<Fault>) {
+pub fn execute(session: &mut Session, id: u64, request: Request) -> (Bytes, Option<Fault>) {
     macro_rules! reply {
         ($done:expr) => {{
             let done = $done;

@@ -5,4 +5,5 @@ mod play;
 mod reply;
 pub mod request;
 
+pub use execute::execute;
 pub use play::play;

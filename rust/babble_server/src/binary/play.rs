@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use axum::body::Bytes;
 use axum::extract::ws::Message;
@@ -16,7 +16,7 @@ use tokio::time::{sleep, timeout};
 use super::execute::execute;
 use super::reply::encode;
 use super::request::{Envelope, Request};
-use crate::connection::{Connection, End};
+use crate::connection::{Connection, End, QUICK};
 use crate::fault::{Fault, Kind};
 use crate::metrics::Metrics;
 use crate::server::{Server, told};
@@ -24,11 +24,11 @@ use crate::session::Session;
 use crate::table::{Playing, SessionEntry};
 use crate::wire::{Made, Make, Nothing};
 
-/// A step that takes longer is not done in the thread that serves connections.
-const QUICK: Duration = Duration::from_millis(1);
-
 /// Operation of a message that has none, in counters.
 const UNKNOWN: &str = "unknown";
+
+/// Plays a request: [`execute`], but for the test of what happens when it panics.
+type Execute = fn(&mut Session, u64, Request) -> (Bytes, Option<Fault>);
 
 /// A client's hold of a session.
 struct Hold {
@@ -305,12 +305,26 @@ async fn run(
         Ok(_) => false,
     };
     if here {
-        run_now(&mut hold.playing, &server.metrics, id, request, began);
+        run_now(
+            &mut hold.playing,
+            &server.metrics,
+            id,
+            request,
+            began,
+            execute,
+        );
         return Ok(hold);
     }
     let counters = Arc::clone(server);
     let work = tokio::task::spawn_blocking(move || {
-        run_now(&mut hold.playing, &counters.metrics, id, request, began);
+        run_now(
+            &mut hold.playing,
+            &counters.metrics,
+            id,
+            request,
+            began,
+            execute,
+        );
         hold
     });
     connection.during(work).await
@@ -322,16 +336,19 @@ fn run_now(
     id: u64,
     request: Result<Request, Fault>,
     began: Instant,
+    execute: Execute,
 ) {
     let operation = request.as_ref().map_or(UNKNOWN, Request::operation);
     let is_step = matches!(request, Ok(Request::Step(_)));
     let work = Instant::now();
     let (reply, fault) = match (request, &mut playing.session) {
-        (Ok(request), Some(session)) => attempt(session, id, request).unwrap_or_else(|| {
-            metrics.panicked();
-            playing.session = None;
-            refused(id, panicked())
-        }),
+        (Ok(request), Some(session)) => {
+            attempt(session, id, request, execute).unwrap_or_else(|| {
+                metrics.panicked();
+                playing.session = None;
+                refused(id, panicked())
+            })
+        }
         (Err(fault), _) => refused(id, fault),
         (Ok(_), None) => refused(id, panicked()),
     };
@@ -353,7 +370,12 @@ fn run_now(
 }
 
 /// Nothing if the work panicked.
-fn attempt(session: &mut Session, id: u64, request: Request) -> Option<(Bytes, Option<Fault>)> {
+fn attempt(
+    session: &mut Session,
+    id: u64,
+    request: Request,
+    execute: Execute,
+) -> Option<(Bytes, Option<Fault>)> {
     let work = || session.timed(|session| execute(session, id, request));
     catch_unwind(AssertUnwindSafe(work)).ok()
 }
@@ -390,5 +412,55 @@ fn read(message: Message) -> Envelope {
                 "this subprotocol has binary messages only",
             )),
         },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::{IpAddr, Ipv4Addr};
+    use std::time::Instant;
+
+    use clap::Parser;
+
+    use crate::binary::execute::execute;
+    use crate::binary::play::run_now;
+    use crate::binary::request::Request;
+    use crate::options::Cli;
+    use crate::server::Server;
+    use crate::wire::{Make, Reset};
+
+    const CLIENT: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
+
+    #[test]
+    fn a_panic_ends_its_session_alone_and_is_counted() {
+        let server = Server::new(Cli::parse_from([""]).options).unwrap();
+        let make = r#"{"env": "BabbleReach-v0"}"#;
+        let make: Make = serde_json::from_str(make).unwrap();
+        let entries = [0, 1].map(|_| {
+            let (session, admission) = server.open(CLIENT, &make).unwrap();
+            server.table.enter(session, admission).unwrap()
+        });
+        let [broken, whole] = &entries;
+        let reset = |entry: &crate::table::SessionEntry, id, execute| {
+            let mut playing = entry.playing.try_lock().unwrap();
+            let request = Ok(Request::Reset(Reset::default()));
+            let now = Instant::now();
+            run_now(&mut playing, &server.metrics, id, request, now, execute);
+            (
+                playing.session.is_some(),
+                String::from_utf8_lossy(&playing.reply).into_owned(),
+            )
+        };
+        let (is_there, reply) = reset(broken, 1, |_, _, _| panic!("as a test"));
+        assert!(!is_there && reply.contains("ServerError"), "{reply}");
+        // Whoever still asks gets the same answer.
+        let (_, reply) = reset(broken, 2, execute);
+        assert!(reply.contains("ServerError"), "{reply}");
+        let (is_there, reply) = reset(whole, 1, execute);
+        assert!(is_there && !reply.contains("error"), "{reply}");
+        assert_eq!(server.metrics.faults(), 1);
+        server.table.end(broken);
+        drop(entries);
+        assert_eq!(server.admissions.counts(), (1, 1));
     }
 }

@@ -12,6 +12,8 @@ use crate::executor::Stop;
 use crate::stream::Stream;
 use crate::tasks::reach::case::{check_obstacle, obstacle_from, obstacle_value};
 
+/// Least and greatest diameter of an object \[m\].
+pub(super) const DIAMETER_BOUNDS_M: [f64; 2] = [0.005, 0.2];
 /// Least distance from the object to the point that it is to be carried to \[m\].
 const CARRY_M: f64 = 0.05;
 /// Distance within which an object given by a user is at the place meant \[m\].
@@ -208,10 +210,11 @@ impl GraspRequest {
                 problem: "objects are carried with obs = \"goal\" alone".to_owned(),
             });
         }
-        if let Some(diameter) = self.diameter.filter(|d| !(0.005..=0.2).contains(d)) {
+        let [least, most] = DIAMETER_BOUNDS_M;
+        if let Some(diameter) = self.diameter.filter(|d| !(least..=most).contains(d)) {
             return Err(EnvError::Case {
                 what: "diameter",
-                problem: format!("{diameter} m is not in [0.005, 0.2]"),
+                problem: format!("{diameter} m is not in {DIAMETER_BOUNDS_M:?}"),
             });
         }
         self.obstacle.as_ref().map_or(Ok(()), check_obstacle)

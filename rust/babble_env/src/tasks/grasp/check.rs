@@ -1,5 +1,6 @@
 //! Whether a state that somebody else wrote is one of this task's episodes.
 
+use super::case::DIAMETER_BOUNDS_M;
 use super::enclosure::Grip;
 use super::sight;
 use super::state::{GraspState, setup};
@@ -48,7 +49,7 @@ fn check_case(task: &GraspTask, state: &GraspState) -> Result<(), EnvError> {
         let range = [task.arm.lower[i], task.arm.upper_limit[i]];
         within("case.start", [&case.start[i]], range)?;
     }
-    within("case.diameter", [&case.diameter], [0.005, 0.2])?;
+    within("case.diameter", [&case.diameter], DIAMETER_BOUNDS_M)?;
     for (what, point) in [("case.object", Some(case.object)), ("case.goal", case.goal)] {
         let Some([x, y]) = point else { continue };
         // An object at the palm may be a little further out than the fingertips.

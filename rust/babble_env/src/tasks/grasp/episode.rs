@@ -15,9 +15,9 @@ use crate::progress::{Lifecycle, Progress};
 use crate::task::MAX_TERMS;
 
 /// Distance that the progress reward calls 1 \[m\].
-const PROGRESS_UNIT_M: f64 = 0.1;
+pub(super) const PROGRESS_UNIT_M: f64 = 0.1;
 /// An object this far below the arm's plane was dropped \[m\].
-const DROPPED_M: f64 = 0.1;
+pub(super) const DROPPED_M: f64 = 0.1;
 
 /// What the physics steps of one control period gave.
 #[derive(Default)]

@@ -1,5 +1,6 @@
 //! Grasping as a task: what its parts are together.
 
+use babble_body::config::EngineName;
 use babble_body::description::LinkDescription;
 use image::RgbImage;
 use serde::Serialize;
@@ -49,6 +50,18 @@ impl Task for GraspTask {
 
     fn min_per_thread(&self) -> usize {
         1
+    }
+
+    fn most_physics_steps(&self) -> u64 {
+        self.config.grasp.physics_steps.into()
+    }
+
+    fn most_replayed_steps(&self) -> u64 {
+        // Only rapier repeats an episode, as its state cannot be checked.
+        if self.config.body.engine == EngineName::Tree {
+            return 0;
+        }
+        u64::from(self.options.max_episode_steps) * self.most_physics_steps()
     }
 
     fn action_len(&self) -> usize {

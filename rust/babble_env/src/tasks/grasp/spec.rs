@@ -4,6 +4,8 @@ use std::borrow::Cow;
 
 use babble_eye::FOVEA_BLOCKS;
 
+use super::case::DIAMETER_BOUNDS_M;
+use super::episode::{DROPPED_M, PROGRESS_UNIT_M};
 use super::sight::FOVEA_NEURONS;
 use super::state::{FACTS, MEASURES};
 use super::task::GraspTask;
@@ -32,6 +34,7 @@ pub(super) fn spec(task: &GraspTask) -> Spec {
             (false, Reward::Progress) => &["progress", "enclosure", "success", "failure"],
             (false, Reward::Sparse) => &["success"],
         },
+        reward_bounds: reward_bounds(task),
         facts: &FACTS,
         measures: MEASURES,
         outcomes: OUTCOMES.map(Outcome::name).to_vec(),
@@ -151,5 +154,24 @@ fn action(task: &GraspTask) -> Entry {
         high: vec![1.0; 4],
         unit,
         description,
+    }
+}
+
+/// Bounds of the reward of one step. Where an episode goes on, object and palm are as near to each
+/// other as the arm's reach allows. That no step moves them by as much is no theorem: it would take 20
+/// m/s, and the fastest object in ten million steps of random play had 2.8 m/s. The share of enclosure is
+/// from 0 to 1; success and failure exclude each other.
+fn reward_bounds(task: &GraspTask) -> [f64; 2] {
+    match (task.options.goal, task.options.reward) {
+        (true, _) => [-1.0, 0.0],
+        (false, Reward::Progress) => {
+            let [length, width] = [task.arm.length(), task.arm.half_width];
+            let [_, diameter] = DIAMETER_BOUNDS_M;
+            let object = length + width + diameter;
+            let pocket = length + task.robot.pocket(0.5 * diameter).norm();
+            let most = libm::hypot(object + pocket, DROPPED_M) / PROGRESS_UNIT_M + 2.0;
+            [-most, most]
+        }
+        (false, Reward::Sparse) => [0.0, 1.0],
     }
 }

@@ -19,7 +19,7 @@ use crate::stream::Stream;
 use crate::task::MAX_TERMS;
 
 /// Distance that the progress reward calls 1 \[m\].
-const PROGRESS_UNIT_M: f64 = 0.1;
+pub(super) const PROGRESS_UNIT_M: f64 = 0.1;
 
 /// What is drawn for a new episode.
 #[derive(Debug, Clone, Copy)]

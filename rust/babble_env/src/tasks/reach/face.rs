@@ -57,6 +57,11 @@ impl Task for ReachTask {
         }
     }
 
+    fn most_physics_steps(&self) -> u64 {
+        // A whole movement, which drawing a legal case plays in every control.
+        self.movement_physics_steps() as u64
+    }
+
     fn action_len(&self) -> usize {
         2
     }

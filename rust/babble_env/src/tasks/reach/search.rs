@@ -25,9 +25,7 @@ pub(super) struct Search<'a> {
 
 impl<'a> Search<'a> {
     pub(super) fn new(task: &ReachTask, stop: &'a Stop<'a>) -> Self {
-        let reach = &task.config.reach;
-        let periods = reach.movement_steps() + task.settle_steps();
-        let steps = periods * reach.physics_steps as usize;
+        let steps = task.movement_physics_steps();
         Self {
             stop,
             drawn: 0,

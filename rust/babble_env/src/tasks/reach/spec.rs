@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use super::episode::PROGRESS_UNIT_M;
 use super::task::ReachTask;
 use crate::options::{Control, Reward};
 use crate::outcome::Outcome;
@@ -25,6 +26,7 @@ pub(super) fn spec(task: &ReachTask) -> Spec {
         goals: goals(task),
         action: action(task),
         reward_terms: reward_terms(task),
+        reward_bounds: reward_bounds(task),
         facts: &SUCCESS_FACTS,
         measures: &[],
         outcomes: OUTCOMES.map(Outcome::name).to_vec(),
@@ -153,5 +155,19 @@ fn reward_terms(task: &ReachTask) -> &'static [&'static str] {
         (true, _) => &["distance"],
         (false, Reward::Progress) => &["progress", "success", "failure"],
         (false, Reward::Sparse) => &["success"],
+    }
+}
+
+/// Bounds of the reward of one step. Fingertip and target are within the arm's length of the shoulder,
+/// so no step brings them nearer or farther by more than twice that; success and failure exclude each
+/// other.
+fn reward_bounds(task: &ReachTask) -> [f64; 2] {
+    match (task.options.goal, task.options.reward) {
+        (true, _) => [-1.0, 0.0],
+        (false, Reward::Progress) => {
+            let most = 2.0 * task.arm.length() / PROGRESS_UNIT_M + 1.0;
+            [-most, most]
+        }
+        (false, Reward::Sparse) => [0.0, 1.0],
     }
 }

@@ -138,6 +138,12 @@ impl ReachTask {
         (settle_s / self.config.reach.control_period_s).round() as usize
     }
 
+    /// Physics steps of a whole movement, settling included.
+    pub(super) fn movement_physics_steps(&self) -> usize {
+        let periods = self.config.reach.movement_steps() + self.settle_steps();
+        periods * self.config.reach.physics_steps as usize
+    }
+
     /// Angles of a point of the plane in the camera frame \[rad\].
     #[must_use]
     pub fn angles(camera: &Pinhole, point: Vector2<f64>) -> [f64; 2] {

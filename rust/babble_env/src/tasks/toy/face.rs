@@ -63,6 +63,7 @@ impl Task for PointTask {
             goals: vec![],
             action: entry("action", &["x", "y"], -1.0, "velocity, 0.1 m a step"),
             reward_terms: &["success"],
+            reward_bounds: [0.0, 1.0],
             facts: &SUCCESS_FACTS,
             measures: &[],
             outcomes: Self::OUTCOMES

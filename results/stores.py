@@ -58,9 +58,9 @@ STORES: dict[str, dict[str, str]] = {
         "fine": f'{READOUTS} --bodies paper --movements 20000 --networks "fine obstacle, Hebb"',
     },
     "changed_body": {
-        "conjunctive": f'{CHANGED_BODY} --movements 4000 --seeds 1 --agents "Hebb `conjunctive`"',
-        "paper": f'{CHANGED_BODY} --movements 4000 --seeds 1 --agents "Hebb `paper`"',
-        "ppo": f"{CHANGED_BODY} --agents PPO --seeds 1 --ppo-repair 1024 4096 --changes none "
+        "conjunctive": f'{CHANGED_BODY} --movements 4000 --agents "Hebb `conjunctive`"',
+        "paper": f'{CHANGED_BODY} --movements 4000 --agents "Hebb `paper`"',
+        "ppo": f"{CHANGED_BODY} --agents PPO --ppo-repair 1024 4096 --changes none "
         '"elbow to 85°" "a fifth of the stiffness" "eye 4 cm to the right"',
     },
     "fig4": {"paper": "gym-babble reproduce fig4"},

@@ -64,7 +64,9 @@ if __name__ == "__main__":
         for name, agent in (("chain", plain), ("chunk", persistent)):
             result = gym_babble.evaluate(agent, cases=cases, max_episode_steps=400)
             held[name].append(result.rate("held"))
-    rows = {name: {"held": fmean(rates), "by_seed": rates} for name, rates in held.items()}
+    rows: dict[str, Any] = {
+        name: {"held": fmean(rates), "by_seed": rates} for name, rates in held.items()
+    }
     if arguments.json:
         print(json.dumps(rows))
     else:

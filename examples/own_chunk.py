@@ -25,7 +25,9 @@ BESIDE = 12.0  # Most that the shoulder is off when the arm returns [deg], as in
 class Persistent(Chain):
     """The chain, and a chunk behind it."""
 
-    def predict(self, observation: Any, state: Any, episode_start: Any, _: Any = None) -> Any:
+    def predict(
+        self, observation: Any, state: Any = None, episode_start: Any = None, _: Any = None
+    ) -> Any:
         """As the chain, unless the hand has closed and missed."""
         joints = gym_babble.Joints(self.env)
         arm = np.atleast_2d(joints.posture(observation))[:, :2]
@@ -46,7 +48,8 @@ class Persistent(Chain):
         off = np.where(missed[:, None], np.outer(beside, [1, 0]), off)
         away = joints.actions(np.hstack([home, np.tile(OPEN, (n, 1))]), observation)
         actions = np.where(left[:, None] > 0, away, np.atleast_2d(actions))
-        return (actions if np.ndim(episode_start) else actions[0]), (plans, now, left, home, off)
+        one = np.ndim(observation["arm"]) == 1
+        return (actions[0] if one else actions), (plans, now, left, home, off)
 
 
 if __name__ == "__main__":

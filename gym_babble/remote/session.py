@@ -83,11 +83,11 @@ class Session:
         self._channel: Channel | None = self._connected(deadline)
         try:
             self.made: dict[str, Any] = self._enter("make", asked, deadline)
-        except SessionLostError as error:
-            raise ServerError(f"{url}: {error}") from error
-        finally:
-            if not hasattr(self, "made"):
-                self._drop()
+        except BaseException as error:
+            self._drop()
+            if isinstance(error, SessionLostError):  # There was none to lose.
+                raise ServerError(f"{url}: {error}") from error
+            raise
         self._last: int = 0
         self._attendant = Thread(target=self._attend, name="gym-babble pings", daemon=True)
         self._attendant.start()

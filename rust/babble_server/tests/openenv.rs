@@ -185,6 +185,27 @@ fn bad_messages_are_named_and_change_nothing() {
     }
 }
 
+/// A reply would be several times the image's bytes. Catches a limit that counts those alone.
+#[test]
+fn an_observation_longer_than_a_message_is_refused() {
+    let mut player = player("BabbleReach-v0");
+    let mut asked = |size: u32| {
+        let options = json!({"obs": "retina", "retina_size": size});
+        let message = json!({"type": "reset", "data": {"options": options}});
+        player.answer(&message.to_string()).unwrap().result
+    };
+    let most = Limits::default().message_bytes;
+    let reply = asked(1000).unwrap();
+    assert!(reply.len() <= most && reply.len() > 3 * 1000 * 1000);
+    let refused = asked(2048).unwrap_err();
+    assert_eq!(refused.kind, babble_server::fault::Kind::LimitError);
+    assert!(
+        refused.message.contains(&most.to_string()),
+        "{}",
+        refused.message
+    );
+}
+
 /// JSON that nests deeply is refused before it can exhaust the stack.
 #[test]
 fn deep_json_is_refused() {

@@ -14,7 +14,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMPS := $(VENV)/stamps
 FRAMEWORKS := .venv-frameworks
-FRAMEWORK_SETS := learners rllib lerobot
+FRAMEWORK_SETS := learners rllib lerobot openenv
 PEERS := .venv-bench
 
 # One interpreter for every build of pyo3, so that none undoes another.
@@ -116,6 +116,7 @@ frameworks: $(foreach set,$(FRAMEWORK_SETS),$(FRAMEWORKS)/$(set)/installed) ## R
 	$(FRAMEWORKS)/learners/bin/python .ci/rl_zoo3_settings.py
 	$(FRAMEWORKS)/rllib/bin/python examples/rllib_ppo.py --iterations 2 --every 1
 	$(FRAMEWORKS)/rllib/bin/pytest -s tests/test_rllib.py tests/test_study_ray.py
+	$(FRAMEWORKS)/openenv/bin/pytest tests/test_openenv_client.py
 
 constraints: $(STAMPS)/dependencies ## Pin the newest releases that pyproject.toml allows, for every Python and platform
 	$(BIN)/uv pip compile pyproject.toml --extra all --extra dev --universal --python-version 3.10 --upgrade \

@@ -17,6 +17,7 @@ ENVIRONMENTS = {
     "learners": ("stable-baselines3", "rl-zoo3", "TorchRL", "skrl", "Tianshou", "Minari"),
     "rllib": ("RLlib",),
     "lerobot": ("LeRobot",),
+    "openenv": ("OpenEnv",),
 }
 """The sections that each environment runs."""
 

@@ -98,8 +98,9 @@ class Relay:
         return f"ws://127.0.0.1:{self._listener.getsockname()[1]}"
 
     def break_all(self) -> None:
-        """Breaks all connections."""
-        for one in self._sockets:
+        """Breaks the connections that there are."""
+        broken, self._sockets = self._sockets, []
+        for one in broken:
             with suppress(OSError):
                 one.shutdown(socket.SHUT_RDWR)
 

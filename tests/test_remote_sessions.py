@@ -106,13 +106,13 @@ def test_a_connection_that_breaks_while_nobody_asks_is_made_again(server, monkey
 def test_pings_are_answered_while_nobody_asks(monkeypatch):
     # A client that trains for minutes between two steps keeps its connection.
     monkeypatch.setattr(session, "ATTEND_S", 0.02)
-    with served("--ping-seconds", 0.1) as server, Relay(server.port) as relay:
+    with served("--ping-seconds", 0.5) as server, Relay(server.port) as relay:
         pings = []
         relay.cut = lambda up, size: pings.append((up, size))
         env = RemoteEnv(url=relay.url)
         env.reset(seed=0)
         pings.clear()
-        until(lambda: len(pings) > 16)  # Four times as many as the server lets go unanswered.
+        until(lambda: len(pings) > 8)  # Twice as many as the server lets go unanswered.
         env.step(ACTION)
         assert relay.connections == 1
         env.close()
@@ -184,15 +184,19 @@ def test_a_stopped_server_says_why():
             env.step(ACTION)
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="stops a process by a signal")
 def test_a_server_that_does_not_answer_in_time_has_its_own_error():
     with served() as server:
         env = RemoteEnv(url=server.url, timeout=0.3)
         env.reset(seed=0)
         server.process.send_signal(signal.SIGSTOP)
-        with pytest.raises(ServerTimeoutError, match=r"'step' within 0.3 s") as caught:
-            env.step(ACTION)
+        os.waitid(os.P_PID, server.process.pid, os.WSTOPPED | os.WNOWAIT)
+        try:
+            with pytest.raises(ServerTimeoutError, match=r"'step' within 0.3 s") as caught:
+                env.step(ACTION)
+        finally:
+            server.process.send_signal(signal.SIGCONT)
         assert isinstance(caught.value, TimeoutError)
-        server.process.send_signal(signal.SIGCONT)
         local = BabbleReachEnv()
         assert_same(env.reset(seed=3), local.reset(seed=3))
         assert_same(env.step(ACTION), local.step(ACTION))
@@ -388,6 +392,7 @@ def left_behind(server, connects):
     clients(20)
     before = resources(server)
     clients(connects)
+    until(lambda: (resources(server) - before)[2] <= 0)  # Sockets close a little later.
     return resources(server) - before
 
 
@@ -396,9 +401,8 @@ def left_behind(server, connects):
 def test_connects_leave_nothing_behind(connects):
     mine = len(os.listdir("/proc/self/fd")), threading.active_count()  # noqa: PTH208
     with served("--resume-seconds", 0.05) as server:
-        kilobytes, threads, descriptors = left_behind(server, connects)
-    print(f"{connects} connects: {kilobytes} kB, {descriptors} descriptors, {threads} threads more")
-    assert descriptors <= 0
+        kilobytes, threads, _ = left_behind(server, connects)
+    print(f"after {connects} connects: {kilobytes} kB and {threads} threads more")
     assert threads <= 2
     assert kilobytes < 4_096
     until(lambda: threading.active_count() <= mine[1])
@@ -448,8 +452,8 @@ def test_ten_minutes_at_full_load():
         for thread in threads:
             thread.join()
         until(lambda: server.metric("gym_babble_sessions ") == 0)
+        until(lambda: (resources(server) - before)[2] <= 0)
         more = resources(server) - before
     print(steps, f"more at the end: {more[0]} kB, {more[1]} threads, {more[2]} descriptors")
     assert not faults
     assert more[0] < 65_536
-    assert more[2] <= 0

@@ -32,6 +32,7 @@ class BabbleEnv(Made, gymnasium.Env[Any, Any]):
     metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES)}  # noqa: RUF012 - Gymnasium's
     task_name: ClassVar[str] = ""
     """The task of a class that has one of its own."""
+    _interface_class: ClassVar[type[Interface]] = Interface
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         """Adds the task's options to the signature and the docstring."""
@@ -63,7 +64,7 @@ class BabbleEnv(Made, gymnasium.Env[Any, Any]):
         limit = time_limit()
         if limit is not None:
             options.setdefault("max_episode_steps", limit)
-        self._interface = Interface(
+        self._interface = self._interface_class(
             task or self.task_name, config=config, render_mode=render_mode, options=options
         )
         self.render_mode = render_mode

@@ -51,6 +51,7 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
     }
     task_name: ClassVar[str] = ""
     """The task of a class that has one of its own."""
+    _interface_class: ClassVar[type[Interface]] = Interface
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         """Adds the task's options to the signature and the docstring."""
@@ -86,7 +87,7 @@ class BabbleVectorEnv(Made, VectorEnv[Any, Any, Any]):
         """
         if render_mode == "human":
             raise ConfigError("render_mode = 'human' shows one environment; use gymnasium.make")
-        self._interface = Interface(
+        self._interface = self._interface_class(
             task or self.task_name, config=config, render_mode=render_mode, options=options
         )
         self.render_mode = render_mode

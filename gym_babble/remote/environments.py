@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn
 
 from gymnasium.vector import AutoresetMode
 
 from gym_babble import _core
 from gym_babble.checks import check_number, check_threads, shown
 from gym_babble.envs import BabbleEnv, BabbleVectorEnv
+from gym_babble.envs.interface import Interface
 from gym_babble.envs.member import BatchMember, check_state
 from gym_babble.envs.registry import environment
 from gym_babble.errors import ConfigError, ServerError
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from gym_babble.config import ConfigLike
-    from gym_babble.envs.interface import Interface
 
 __all__ = ["DEFAULT_URL", "RemoteEnv", "RemoteVectorEnv"]
 
@@ -28,9 +28,19 @@ DEFAULT_URL = "ws://127.0.0.1:8741"
 LONGEST_S = 86_400.0
 
 
+class RemoteInterface(Interface):
+    """The interface of environments that another process steps."""
+
+    @property
+    def unconverged_steps(self) -> int | None:
+        """None: the server does not tell."""
+        return None
+
+
 class _Remote:
     """What both have: a session in place of the core's batch."""
 
+    _interface_class: ClassVar[type[Interface]] = RemoteInterface
     _interface: Interface
     _batch: Any
 
@@ -195,9 +205,8 @@ class RemoteVectorEnv(_Remote, BabbleVectorEnv):
                 member.go_on()
             self._seeded = True
 
-    def close_extras(self, **kwargs: Any) -> None:
+    def close_extras(self) -> None:
         """Ends the session on the server."""
-        super().close_extras(**kwargs)
         self._batch.close()
 
 

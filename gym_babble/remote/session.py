@@ -48,8 +48,8 @@ ATTEND_S = 5.0
 """How often pings are answered while nothing else is asked [s]."""
 RETRY_S = 0.2
 """Time between two tries to connect again [s]."""
-FAREWELL_S = 2.0
-"""How long closing may wait for the server [s]."""
+ASIDE_S = 2.0
+"""How long closing, and connecting again while nothing is asked, may take [s]."""
 
 
 class Session:
@@ -83,11 +83,11 @@ class Session:
         self._channel: Channel | None = self._connected(deadline)
         try:
             self.made: dict[str, Any] = self._enter("make", asked, deadline)
-        except SessionLostError as error:
-            raise ServerError(f"{url}: {error}") from error
-        finally:
-            if not hasattr(self, "made"):
-                self._drop()
+        except BaseException as error:
+            self._drop()
+            if isinstance(error, SessionLostError):  # There was none to lose.
+                raise ServerError(f"{url}: {error}") from error
+            raise
         self._last: int = 0
         self._attendant = Thread(target=self._attend, name="gym-babble pings", daemon=True)
         self._attendant.start()
@@ -250,7 +250,7 @@ class Session:
                     with suppress(LimitError, ServerError):
                         self._drop()
                         self._heed(error)
-                        self._resume(time.monotonic() + ATTEND_S)
+                        self._resume(time.monotonic() + ASIDE_S)
 
     def close(self) -> None:
         """Ends the session on the server; calling it again is harmless."""
@@ -263,7 +263,7 @@ class Session:
         with self._lock:
             channel, self._channel = self._channel, None
         if channel is not None:
-            deadline = time.monotonic() + FAREWELL_S
+            deadline = time.monotonic() + ASIDE_S
             with suppress(OSError, BrokenChannelError):
                 channel.send(msgpack.encode([self._last + 1, "close", {}]), deadline)
                 channel.receive(deadline)

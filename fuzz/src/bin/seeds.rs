@@ -59,7 +59,8 @@ fn main() -> Result<()> {
     let small = "profile = \"icub\"\n[body.arm]\nhalf_width_m = 0.012\n[body.joints.elbow]\nupper_deg = 99\n";
     put("config", "overrides", small.as_bytes())?;
     agents()?;
-    requests()
+    requests()?;
+    openenv_messages()
 }
 
 /// A request of each operation.
@@ -119,6 +120,41 @@ fn requests() -> Result<()> {
             operation,
             &rmp_serde::to_vec_named(&(1, operation, body))?,
         )?;
+    }
+    Ok(())
+}
+
+/// A message of each type, and resets of another environment and of a case.
+fn openenv_messages() -> Result<()> {
+    for (name, message) in [
+        (
+            "reset",
+            json!({"type": "reset", "data": {"seed": 3, "episode_id": "a"}}),
+        ),
+        (
+            "another",
+            json!({"type": "reset", "data": {"env": "BabbleGrasp-v0", "options": {"obs": "goal", "reward": "sparse"}}}),
+        ),
+        (
+            "config",
+            json!({"type": "reset", "data": {"config": {"body": {"arm": {"density_kg_m3": 900}}}}}),
+        ),
+        (
+            "case",
+            json!({"type": "reset", "data": {"scenario": {"target": [0.1, 0.3], "obstacle": null}}}),
+        ),
+        (
+            "step",
+            json!({"type": "step", "data": {"action": [0.5, -2], "metadata": {}}}),
+        ),
+        ("state", json!({"type": "state"})),
+        (
+            "mcp",
+            json!({"type": "mcp", "data": {"jsonrpc": "2.0", "id": 1, "method": "tools/list"}}),
+        ),
+        ("close", json!({"type": "close"})),
+    ] {
+        put("openenv_message", name, message.to_string().as_bytes())?;
     }
     Ok(())
 }

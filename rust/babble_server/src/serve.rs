@@ -21,6 +21,9 @@ use crate::connection::UNANSWERED;
 use crate::options::Options;
 use crate::server::{Peer, Server, told};
 
+/// Bytes of the head of an HTTP request, and of what is read of a body at once.
+const HEAD_BYTES: usize = 64 << 10;
+
 /// A server that has its port.
 #[derive(Debug)]
 pub struct Listening {
@@ -138,6 +141,8 @@ async fn connect(stream: TcpStream, peer: Peer, app: Router, server: Arc<Server>
     });
     let connection = http1::Builder::new()
         .timer(TokioTimer::new())
+        .max_buf_size(HEAD_BYTES)
+        .max_header_size(HEAD_BYTES)
         .header_read_timeout(server.limits().handshake_time)
         .serve_connection(TokioIo::new(stream), service)
         .with_upgrades();

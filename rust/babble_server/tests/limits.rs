@@ -233,6 +233,15 @@ async fn get(running: &Running, path: &str, headers: &str) -> String {
 }
 
 #[tokio::test]
+async fn long_heads_are_refused() {
+    let running = Running::start(&[]).await;
+    let head = format!("Host: localhost\r\nX: {}\r\n", "x".repeat(100_000));
+    let answered = get(&running, "/", &head).await;
+    assert!(!answered.contains("200 OK"), "{answered}");
+    running.ended().await;
+}
+
+#[tokio::test]
 async fn on_loopback_the_name_of_the_server_and_the_origin_of_a_page_are_checked() {
     let running = Running::start(&["--allow-origin", "https://lab.example.org"]).await;
     let host = format!("Host: {}\r\n", running.address);

@@ -1,6 +1,7 @@
 //! OpenEnv's routes over HTTP.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use axum::body::Bytes;
 use axum::extract::{Extension, State};
@@ -11,6 +12,7 @@ use axum::{Json, Router};
 use serde_json::{Value, json};
 
 use super::message::{Code, Refusal, Reset, read_action};
+use super::player::check_size;
 use super::{Mode, Player, mcp, openapi, schema};
 use crate::fault::{Fault, Kind};
 use crate::server::{Peer, Server};
@@ -32,6 +34,7 @@ struct Documents {
 pub(crate) fn routes(server: &Arc<Server>) -> Result<Router<Arc<Server>>, Fault> {
     let served = &server.options.served;
     let session = Session::make(&served.make(), server.limits(), 1)?;
+    check_size(&session, server.limits())?;
     let mode = served.openenv_mode;
     let metadata = json!({
         "name": session.env,
@@ -82,6 +85,7 @@ async fn reset(
     Extension(peer): Extension<Peer>,
     body: Bytes,
 ) -> Response {
+    let (began, counters) = (Instant::now(), Arc::clone(&server));
     let work = move || -> Result<String, Refusal> {
         let asked = if body.is_empty() {
             Reset::default()
@@ -94,10 +98,17 @@ async fn reset(
             .map_err(|fault| no_session(&server, fault))?;
         Player::new(served.clone(), server.limits().clone(), session).first(asked)
     };
-    match tokio::task::spawn_blocking(work).await {
-        Ok(Ok(shown)) => as_json(shown),
-        Ok(Err(refusal)) => refused(&refusal),
-        Err(_) => refused(&Refusal::new(Code::SessionError, "the server has a fault")),
+    let done = tokio::task::spawn_blocking(work).await.unwrap_or_else(|_| {
+        counters.metrics.panicked();
+        Err(Refusal::new(Code::SessionError, "the server has a fault"))
+    });
+    let fault = done.as_ref().err().map(Refusal::fault);
+    counters
+        .metrics
+        .request("openenv_reset", began, fault.as_ref());
+    match done {
+        Ok(shown) => as_json(shown),
+        Err(refusal) => refused(&refusal),
     }
 }
 

@@ -127,6 +127,11 @@ impl Refusal {
         }
     }
 
+    /// As it is counted.
+    pub(super) fn fault(&self) -> Fault {
+        Fault::new(self.kind, "")
+    }
+
     /// As a message of the server.
     #[must_use]
     pub fn text(&self) -> String {

@@ -11,6 +11,11 @@ use crate::limits::Limits;
 use crate::session::Session;
 use crate::wire::{self, CaseMap, Make, Shown};
 
+/// Letters of a float32 number and a comma.
+const MOST_NUMBER: usize = 16;
+/// Letters of a pixel, as in `[255,255,255],`.
+const MOST_PIXEL: usize = 14;
+
 /// One environment, and its episode.
 #[derive(Debug)]
 pub struct Player {
@@ -119,6 +124,7 @@ impl Player {
             self.session.timed(|session| session.reset(&begin))?
         } else {
             let mut other = Session::make(&make, &self.limits, 1)?;
+            check_size(&other, &self.limits)?;
             let shown = other.timed(|session| session.reset(&begin))?;
             (self.session, self.made) = (other, make);
             shown
@@ -174,6 +180,22 @@ impl Player {
             case: episode.map(|_| self.session.case(0)).transpose()?,
         })
     }
+}
+
+/// Checks that a reply of this environment is no longer than a message may be.
+///
+/// # Errors
+/// [`Fault`] that names the limit.
+pub(super) fn check_size(session: &Session, limits: &Limits) -> Result<(), Fault> {
+    let senses = session.spec.senses.iter();
+    let numbers: usize = senses.map(|sense| sense.labels.len()).sum();
+    let pixels = session.retina().map_or(0, |size| size as usize).pow(2);
+    let longest = MOST_NUMBER * numbers + MOST_PIXEL * pixels;
+    if longest > limits.message_bytes {
+        let (what, most) = ("bytes of an observation in JSON", limits.message_bytes);
+        return Err(Fault::limit(what, longest, most));
+    }
+    Ok(())
 }
 
 /// A random id in the form of a UUID.

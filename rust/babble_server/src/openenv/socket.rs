@@ -12,7 +12,6 @@ use super::message::{Code, Refusal};
 use super::player::Player;
 use crate::admission::Admission;
 use crate::connection::{Connection, End, QUICK};
-use crate::fault::Fault;
 use crate::server::Server;
 
 /// A client's episode.
@@ -128,11 +127,7 @@ fn answer(playing: &mut Playing, server: &Server, text: &str) -> Result<Option<S
     let steps = playing.player.steps().saturating_sub(before);
     admitted.steps.fetch_add(steps, Ordering::Relaxed);
     server.metrics.steps(steps as usize);
-    let fault = reply
-        .result
-        .as_ref()
-        .err()
-        .map(|refusal| Fault::new(refusal.kind, ""));
+    let fault = reply.result.as_ref().err().map(Refusal::fault);
     if fault.is_some() {
         admitted.errors.fetch_add(1, Ordering::Relaxed);
     }

@@ -167,6 +167,7 @@ def physics() -> Iterator[Case]:
 
 def wire() -> Iterator[Case]:
     """Round trips over loopback."""
+    arguments: dict[str, Any]
     for name, label, venv, function, arguments in (
         ("echo", "plain TCP, 512 bytes there and back", "rpc", "echo", {"size": 512}),
         ("dm-env-rpc", "dm_env_rpc, does nothing", "rpc", "dm_env_rpc", {}),
@@ -181,8 +182,7 @@ def wire() -> Iterator[Case]:
         label = f"`RemoteEnv`, `{env_id}`"
         yield Case(f"wire-{name}", label, SERVED, "wire_ours:single", arguments)
     label = "`RemoteVectorEnv`, `BabbleReach-v0`, 64 on 1 thread"
-    arguments = {"env_id": "BabbleReach-v0", "n": 64}
-    yield Case("wire-reach-64", label, SERVED, "wire_ours:batch", arguments)
+    yield Case("wire-reach-64", label, SERVED, "wire_ours:batch", {"n": 64})
     label = "`RemoteVectorEnv`, `BabbleGrasp-v0`, object held, 64 on 1 thread"
     arguments = {"n": 64, "threads": 1}
     yield Case("wire-held-64", label, SERVED, "wire_ours:held_batch", arguments)
@@ -190,7 +190,6 @@ def wire() -> Iterator[Case]:
 
 
 CASES = {
-    case.name: case
-    for case in (*peers(), *environments(), *others(), *core(), *physics(), *wire())
+    case.name: case for case in (*peers(), *environments(), *others(), *core(), *physics(), *wire())
 }
 """All rows by name."""

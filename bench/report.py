@@ -268,11 +268,14 @@ def wire(results: Results) -> str:
 
 def sessions(results: Results) -> str:
     """Sessions at once."""
-    row = results["rows"]["wire-sessions"]
+    row = results["rows"].get("wire-sessions")
+    if row is None:
+        return f"{NOT_MEASURED}\n"
+    rate = float(f"{1e6 / row['clock_us']:.3g}")
     return (
-        f"64 sessions at once, each with one environment and its own client: {1e6 / row['clock_us']:,.0f} "
-        f"steps/s in all. The slowest session had {row['slowest']:.2f} of the mean rate, the fastest "
-        f"{row['fastest']:.2f}.\n"
+        f"64 sessions at once, each with one environment and a client of its own: "
+        f"{rate:,.0f} steps/s in all. The slowest session had "
+        f"{row['slowest']:.2f} of the mean rate, the fastest {row['fastest']:.2f}.\n"
     )
 
 
@@ -288,7 +291,8 @@ def speed(results: Results) -> str:
 
 
 BLOCKS: dict[str, Callable[[Results], str]] = {
-    block.__name__: block for block in (marks, machine, peers, batches, physics, others, wire, sessions, speed)
+    block.__name__: block
+    for block in (marks, machine, peers, batches, physics, others, wire, sessions, speed)
 }
 """The blocks between `<!-- bench: NAME -->` and `<!-- end -->` in the pages."""
 

@@ -35,18 +35,18 @@ def openenv(port: str) -> None:
         values: list[float]
 
     class Seen(Observation):  # type: ignore[misc]
-        values: list[float] = []
+        values: tuple[float, ...] = ()
 
     class Nothing(Environment):  # type: ignore[misc]
         SUPPORTS_CONCURRENT_SESSIONS = True
 
         def reset(self, seed: Any = None, episode_id: Any = None, **_: Any) -> Seen:
             del seed, episode_id
-            return Seen(values=[0.5] * FLOATS, done=False, reward=0.0)
+            return Seen(values=(0.5,) * FLOATS, done=False, reward=0.0)
 
         def step(self, action: Act, timeout_s: Any = None, **_: Any) -> Seen:
             del action, timeout_s
-            return Seen(values=[0.5] * FLOATS, done=False, reward=0.0)
+            return Seen(values=(0.5,) * FLOATS, done=False, reward=0.0)
 
         @property
         def state(self) -> State:

@@ -7,6 +7,7 @@ It is imported in the peers' virtual environments too, where only NumPy is sure 
 from __future__ import annotations
 
 import contextlib
+import http.client
 import os
 import socket
 import subprocess
@@ -162,8 +163,9 @@ def openenv(seconds: float) -> Row:
     """OpenEnv's client and its own server of an environment that does nothing."""
     from openenv.core import GenericEnvClient
 
-    with serving(of_own("openenv", str(free_port()))) as (server, url):
-        _until_healthy(url)
+    port = free_port()
+    with serving(of_own("openenv", str(port))) as (server, url):
+        _wait(lambda: _is_healthy(port))
         with GenericEnvClient(base_url=url).sync() as client:
             client.reset()
             return trips(lambda: client.step({"values": ACTION}), server.pid, seconds)
@@ -185,19 +187,15 @@ def openenv_ours(seconds: float) -> Row:
             return trips(ask, server.pid, seconds)
 
 
-def _until_healthy(url: str) -> None:
-    import urllib.request
-
-    end = time.perf_counter() + START_S
-    while True:
-        try:
-            urllib.request.urlopen(f"{url}/health", timeout=1).read()
-        except OSError:
-            if time.perf_counter() > end:
-                raise
-            time.sleep(0.05)
-        else:
-            return
+def _is_healthy(port: int) -> bool:
+    link = http.client.HTTPConnection("127.0.0.1", port, timeout=1)
+    try:
+        link.request("GET", "/health")
+        return link.getresponse().status == 200
+    except OSError:
+        return False
+    finally:
+        link.close()
 
 
 def dm_env_rpc(seconds: float) -> Row:
@@ -225,18 +223,25 @@ def rlmesh(seconds: float) -> Row:
     from rlmesh.numpy import RemoteEnv
 
     action = np.asarray(ACTION, np.float32)
-    with serving(of_own("rlmesh", str(free_port()))) as (server, address):
-        env = _connected(lambda: RemoteEnv(address))
+    port = free_port()
+    with serving(of_own("rlmesh", str(port))) as (server, address):
+        _wait(lambda: _listens(port))
+        env = RemoteEnv(address)
         env.reset(seed=0)
         return trips(lambda: env.step(action), server.pid, seconds)
 
 
-def _connected(connect: Callable[[], Any]) -> Any:
+def _wait(is_so: Callable[[], bool]) -> None:
     end = time.perf_counter() + START_S
-    while True:
-        try:
-            return connect()
-        except Exception:
-            if time.perf_counter() > end:
-                raise
-            time.sleep(0.1)
+    while not is_so():
+        if time.perf_counter() > end:
+            raise RuntimeError(f"the server is not there after {START_S:g} s")
+        time.sleep(0.05)
+
+
+def _listens(port: int) -> bool:
+    try:
+        socket.create_connection(("127.0.0.1", port), timeout=1).close()
+    except OSError:
+        return False
+    return True

@@ -38,14 +38,15 @@ def single(seconds: float, *, env_id: str) -> Row:
         return trips(ask, server.pid, seconds)
 
 
-def batch(seconds: float, *, env_id: str, n: int) -> Row:
-    """A step of one environment of `RemoteVectorEnv`, random actions, autoresets included."""
+def batch(seconds: float, *, n: int) -> Row:
+    """A step of one environment of a batch that reaches, random actions, autoresets included."""
+    env_id = "BabbleReach-v0"
     states = playing(env_id)
     with serving(program()) as (server, line):
         envs = RemoteVectorEnv(env_id, n, url=url_of(line), threads=1)
         envs.reset(seed=0)
         envs.set_state(copies(states, n))
-        drawn = np.random.default_rng(0).uniform(-1.0, 1.0, (ACTIONS, *envs.action_space.shape))
+        drawn = np.random.default_rng(0).uniform(-1.0, 1.0, (ACTIONS, n, 2))
         actions = cycle(drawn.astype(np.float32))
         return trips(lambda: envs.step(next(actions)), server.pid, seconds, units=n)
 
@@ -75,7 +76,7 @@ def held_batch(seconds: float, *, n: int, threads: int) -> Row:
 
 
 def sessions(seconds: float, *, n: int) -> Row:
-    """n sessions at once, each with a client in a thread: how far their rates lie apart."""
+    """Sessions at once, each with a client in a thread: how far their rates lie apart."""
     with serving(program()) as (_, line):
         envs = [RemoteEnv("BabbleReach-v0", url=url_of(line)) for _ in range(n)]
         counts = [0] * n

@@ -17,8 +17,8 @@ THREADS = (1, 2)
 LARGE_BATCHES = BATCHES[-2:]
 DIAMETER_M = 0.05
 """Diameter of the object in the physics rows, as in rust/babble_env/benches/physics.rs."""
-OURS, RUST = "ours", "rust"
-"""The project's own virtual environment, and its Rust."""
+OURS, RUST, SERVED = "ours", "rust", "served"
+"""The project's own virtual environment, its Rust, and the former with the server's program."""
 
 
 @dataclass(frozen=True)
@@ -165,5 +165,32 @@ def physics() -> Iterator[Case]:
             yield Case(f"mujoco-{name}", label, "gym", "twin:physics", theirs)
 
 
-CASES = {case.name: case for case in (*peers(), *environments(), *others(), *core(), *physics())}
+def wire() -> Iterator[Case]:
+    """Round trips over loopback."""
+    for name, label, venv, function, arguments in (
+        ("echo", "plain TCP, 512 bytes there and back", "rpc", "echo", {"size": 512}),
+        ("dm-env-rpc", "dm_env_rpc, does nothing", "rpc", "dm_env_rpc", {}),
+        ("rlmesh", "RLMesh, does nothing", "rpc", "rlmesh", {}),
+        ("openenv", "OpenEnv's client and server, does nothing", "openenv", "openenv", {}),
+        ("openenv-ours", "OpenEnv's client, our `BabbleReach-v0`", "openenv", "openenv_ours", {}),
+    ):
+        yield Case(f"wire-{name}", label, venv, f"wire:{function}", arguments)
+    for name in ("reach", "grasp"):
+        env_id = f"Babble{name.title()}-v0"
+        arguments = {"env_id": env_id}
+        label = f"`RemoteEnv`, `{env_id}`"
+        yield Case(f"wire-{name}", label, SERVED, "wire_ours:single", arguments)
+    label = "`RemoteVectorEnv`, `BabbleReach-v0`, 64 on 1 thread"
+    arguments = {"env_id": "BabbleReach-v0", "n": 64}
+    yield Case("wire-reach-64", label, SERVED, "wire_ours:batch", arguments)
+    label = "`RemoteVectorEnv`, `BabbleGrasp-v0`, object held, 64 on 1 thread"
+    arguments = {"n": 64, "threads": 1}
+    yield Case("wire-held-64", label, SERVED, "wire_ours:held_batch", arguments)
+    yield Case("wire-sessions", "64 `RemoteEnv` at once", SERVED, "wire_ours:sessions", {"n": 64})
+
+
+CASES = {
+    case.name: case
+    for case in (*peers(), *environments(), *others(), *core(), *physics(), *wire())
+}
 """All rows by name."""

@@ -20,6 +20,8 @@ PACKAGES = {
     "robotics": ("gymnasium-robotics", "gymnasium", "mujoco"),
     "envpool": ("envpool",),
     "myo": ("MyoSuite", "mujoco"),
+    "openenv": ("openenv",),
+    "rpc": ("dm-env-rpc", "rlmesh"),
 }
 """Packages that a report names, by virtual environment."""
 VERSIONS = (

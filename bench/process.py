@@ -11,7 +11,7 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bench.cases import OURS, RUST
+from bench.cases import OURS, RUST, SERVED
 
 if TYPE_CHECKING:
     from bench.cases import Case
@@ -29,7 +29,7 @@ class CaseError(RuntimeError):
 
 def interpreter(venv: str) -> str:
     """The Python of a case."""
-    return sys.executable if venv == OURS else str(VENVS / venv / "bin" / "python")
+    return sys.executable if venv in (OURS, SERVED) else str(VENVS / venv / "bin" / "python")
 
 
 def measure(case: Case, seconds: float) -> Row:

@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from bench.cases import BATCHES, CASES, LARGE_BATCHES, THREADS, batch_name
+from bench.cases import BATCHES, CASES, LARGE_BATCHES, SERVED, THREADS, batch_name
 from bench.process import ROOT
 from gym_babble.files import write_file
 
@@ -80,6 +80,24 @@ MARKS = (
         "`rgb_array`, 480 × 480", ("third_person-reach", "third_person-grasp"), 3, "ms", scale=1e-3
     ),
     Mark("reset with a given case", ("reset-reach", "reset-grasp"), 60, "µs"),
+    Mark("`RemoteEnv`, reaching, a step", ("wire-reach",), 100, "µs", "clock_us"),
+    Mark(
+        "`RemoteEnv`, reaching, beside OpenEnv's client and server",
+        ("wire-reach",),
+        5,
+        "×",
+        "clock_us",
+        peer="wire-openenv",
+    ),
+    Mark("`RemoteVectorEnv`, reaching, 64, a step of one", ("wire-reach-64",), 4, "µs", "clock_us"),
+    Mark(
+        "`RemoteVectorEnv`, object held, 64, beside the local batch",
+        ("wire-held-64",),
+        0.9,
+        "×",
+        "clock_us",
+        peer="held-64-1t",
+    ),
     Mark(
         "memory of a reaching environment",
         tuple(f"memory-reach-{n}" for n in LARGE_BATCHES),
@@ -130,7 +148,7 @@ def machine(results: Results) -> str:
     versions = about["versions"]
     peers = ", ".join(
         f"{package} {version}"
-        for venv in ("gym", "robotics", "envpool", "myo")
+        for venv in ("gym", "robotics", "envpool", "myo", "openenv", "rpc")
         for package, version in versions[venv].items()
         if (venv, package) != ("robotics", "gymnasium")
     )
@@ -232,6 +250,32 @@ def others(results: Results) -> str:
     return markdown(["other", "measured"], rows)
 
 
+def wire(results: Results) -> str:
+    """Round trips over loopback."""
+    rows = []
+    for name, case in CASES.items():
+        if not name.startswith("wire-") or name == "wire-sessions":
+            continue
+        row = results["rows"].get(name, {})
+        clock = row.get("clock_us")
+        rate = NOT_MEASURED if clock is None else f"{float(f'{1e6 / clock:.3g}'):,.0f}"
+        times = (number(row.get(key)) for key in ("p50_us", "p99_us", "cpu_us"))
+        label = f"**{case.label}**" if case.venv == SERVED else case.label
+        rows.append([label, *times, rate])
+    heads = ["client and server", "p50 µs", "p99 µs", "CPU µs a step, both", "steps/s"]
+    return markdown(heads, rows)
+
+
+def sessions(results: Results) -> str:
+    """Sessions at once."""
+    row = results["rows"]["wire-sessions"]
+    return (
+        f"64 sessions at once, each with one environment and its own client: {1e6 / row['clock_us']:,.0f} "
+        f"steps/s in all. The slowest session had {row['slowest']:.2f} of the mean rate, the fastest "
+        f"{row['fastest']:.2f}.\n"
+    )
+
+
 def speed(results: Results) -> str:
     """The README's few rows."""
     reaching = ("reach-64-1t", "envpool-reacher", "reach", "reacher", "fetchreach")
@@ -244,7 +288,7 @@ def speed(results: Results) -> str:
 
 
 BLOCKS: dict[str, Callable[[Results], str]] = {
-    block.__name__: block for block in (marks, machine, peers, batches, physics, others, speed)
+    block.__name__: block for block in (marks, machine, peers, batches, physics, others, wire, sessions, speed)
 }
 """The blocks between `<!-- bench: NAME -->` and `<!-- end -->` in the pages."""
 

@@ -27,7 +27,7 @@ from rich.progress import (
 )
 
 from bench import chart, machine, report
-from bench.cases import CASES, OURS, RUST, Case
+from bench.cases import CASES, OURS, RUST, SERVED, Case
 from bench.process import ROOT, VENVS, CaseError, measure
 from gym_babble import _core
 from gym_babble.files import write_file
@@ -106,9 +106,12 @@ def prepare(cases: Sequence[Case], python: str) -> None:
     if _core.debug_build:
         raise SystemExit("error: the extension is a debug build: `make setup` builds it anew")
     VENVS.mkdir(exist_ok=True)
-    for venv in sorted({case.venv for case in cases} - {OURS, RUST}):
+    for venv in sorted({case.venv for case in cases} - {OURS, RUST, SERVED}):
         with console.status(f"installing {venv} into {VENVS.name}/{venv}"):
             machine.install(venv, python)
+    if any(case.name.startswith("wire-") for case in cases):
+        console.print("building the server")
+        subprocess.run(["cargo", "build", "--release", "--package", "babble_server"], check=True)
     for function in sorted({case.function for case in cases if case.venv == RUST}):
         crate, _, bench = function.partition(":")
         console.print(f"building the benchmark {bench} of {crate}")

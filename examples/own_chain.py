@@ -5,10 +5,11 @@ to a random posture; the hand opens; the arm withdraws, looks, comes back a litt
 was, and advances until the palm touches the object; the hand closes. A babble that ends with the
 object in the hand is learnt from: what the eye saw is linked to the arm before the approach, to the
 arm at the touch, and to the closed hand. There are no gradients and no inverse kinematics.
+`gym_babble.ChainAgent` then acts on what is recalled: it reaches, advances, and closes the hand.
 """
 
 import argparse
-import time
+import json
 from typing import Any
 
 import gymnasium as gym
@@ -19,24 +20,28 @@ from gym_babble import brain
 
 ENVS = 50
 STEP = np.radians(1.5)  # How far the arm advances in a control step.
-NEAR = np.radians(12)  # So near its posture the arm begins to advance.
-BEYOND = 1.6  # How far it advances, in ways that were babbled.
+BEYOND = 1.6  # How far it advances in a babble, in ways of its withdrawal.
 OPEN = np.zeros(2)
 DISTANCE = np.hypot(*np.mgrid[-10:11, -10:11]).ravel()  # Of the fovea's blocks from its middle.
 
 
-class Chain:
+class Chain(gym_babble.ChainAgent):
     """What is seen recalls an arm before and after the approach, and a hand."""
 
     env = "BabbleGrasp-v0"
 
     def __init__(self, seed: int = 0) -> None:
-        self.joints = gym_babble.Joints(self.env)
-        self.reflex = gym.make(self.env).unwrapped.interface.quantities["reflex"]
+        super().__init__(self.env)
+        self.envs = gym.make_vec(
+            self.env, ENVS, control="posture", max_episode_steps=500, enclosure_reflex=True,
+            reflex_releases=True, support_stays=True,
+        )  # fmt: skip
+        self.joints = gym_babble.Joints(self.envs)
+        self.reflex = self.interface.quantities["reflex"]
         low, high = self.joints.ranges.T
         margin = (high - low)[:2] / 8  # The maps extend two neurons past each joint limit.
         where = brain.PopulationMap(21, low=[0, 0], high=[1, 1])
-        size = brain.PopulationMap(5, low=[1.5], high=[7.5])
+        size = brain.PopulationMap(3, low=[1.5], high=[7.5])
         self.sight = brain.ConjunctiveMap(where, size)
         arm = brain.PopulationMap(21, low=low[:2] - margin, high=high[:2] + margin)
         self.maps = [arm, arm, brain.PopulationMap(21, low=low[2:], high=high[2:])]
@@ -51,19 +56,18 @@ class Chain:
         size = edges @ DISTANCE / np.maximum(edges.sum(-1), 1e-6)
         return self.sight.encode(seen["eye"], np.clip(size, 1.5, 7.5)[:, None])
 
-    def recall(self, seen: Any) -> Any:
-        """The postures [rad] that an observation calls up: arm before and after, hand."""
-        g = self.see(seen)
-        return [one.read_out(g @ w.T) for one, w in zip(self.maps, self.weights, strict=True)]
+    def recall(self, senses: Any) -> Any:
+        """The postures [rad] that the senses call up; the hand closes 20° further than babbled."""
+        g = self.see(senses)
+        before, after, hand = (
+            one.read_out(g @ w.T) for one, w in zip(self.maps, self.weights, strict=True)
+        )
+        return before, after, np.minimum(hand + np.radians(20), self.reflex)
 
     def learn(self, babbles: int) -> "Chain":
         """Babbles until so many are learnt from: Δw = η g (a − w), η = 1 / use of the synapse."""
-        envs = gym.make_vec(
-            self.env, ENVS, control="posture", max_episode_steps=500, enclosure_reflex=True,
-            reflex_releases=True, support_stays=True,
-        )  # fmt: skip
         while self.learnt < babbles:
-            kept, seen, *postures = self.babble(envs)
+            kept, seen, *postures = self.babble()
             self.babbled += ENVS
             for i in np.flatnonzero(kept)[: babbles - self.learnt]:
                 g = self.see({name: sense[i : i + 1] for name, sense in seen.items()})[0]
@@ -74,78 +78,64 @@ class Chain:
                 self.learnt += 1
         return self
 
-    def babble(self, envs: Any) -> Any:
+    def move(self, arm: Any, hand: Any, steps: int) -> Any:
+        """The muscles pull to a posture; what is sensed then, and the arm (n, 2)."""
+        actions = self.joints.actions(np.hstack([arm, np.tile(hand, (ENVS, 1))]))
+        for _ in range(steps):
+            senses = self.envs.step(actions)[0]
+        return senses, self.joints.posture(senses)[:, :2]
+
+    def turn(self, joint: int, low: float, high: float) -> Any:
+        """Turns (n, 2) of one joint by random angles between two [deg]."""
+        turns = np.zeros((ENVS, 2))
+        turns[:, joint] = np.radians(self.random.uniform(low, high, ENVS))
+        return turns
+
+    def babble(self) -> Any:
         """A babble in each environment: which ones are kept, what was seen, and three postures."""
-
-        def move(arm: Any, hand: Any, steps: int) -> Any:
-            for _ in range(steps):
-                points = np.hstack([arm, np.broadcast_to(hand, (ENVS, 2))])
-                seen = envs.step(joints.actions(points))[0]
-            return seen, self.joints.posture(seen)[:, :2]
-
-        def drawn(low: float, high: float, joint: int) -> Any:
-            turn = np.zeros((ENVS, 2))
-            turn[:, joint] = np.radians(self.random.uniform(low, high, ENVS))
-            return turn
-
-        joints = gym_babble.Joints(envs)
-        low, high = joints.ranges[:2].T
-        seen, _ = envs.reset(seed=int(self.random.integers(2**31)), options={"in_hand": True})
-        move(self.joints.posture(seen)[:, :2], self.reflex, 45)
-        _, grasped = move(self.random.uniform(low, high, (ENVS, 2)), self.reflex, 50)
-        move(grasped, OPEN, 40)
-        way = drawn(10, 40, 1)
-        move(grasped - way, OPEN, 40)
-        away, _ = move(grasped - way - drawn(30, 70, 0), OPEN, 40)
-        _, before = move(grasped - way + drawn(-6, 6, 0), OPEN, 50)
-        after, touched = before.copy(), np.zeros(ENVS, bool)
+        low, high = self.joints.ranges[:2].T
+        seed = int(self.random.integers(2**31))
+        senses, _ = self.envs.reset(seed=seed, options={"in_hand": True})
+        self.move(self.joints.posture(senses)[:, :2], self.reflex, 45)
+        _, grasped = self.move(self.random.uniform(low, high, (ENVS, 2)), self.reflex, 50)
+        self.move(grasped, OPEN, 40)
+        way = self.turn(1, 10, 40)
+        self.move(grasped - way, OPEN, 40)
+        seen, _ = self.move(grasped - way - self.turn(0, 30, 70), OPEN, 40)
+        _, before = self.move(grasped - way + self.turn(0, -12, 12), OPEN, 50)
+        after, touched = before.copy(), np.zeros((ENVS, 1), bool)
         for step in range(60):
             advance = np.minimum(STEP * step / way[:, 1:], BEYOND)
-            seen, arm = move(np.where(touched[:, None], after, before + advance * way), OPEN, 1)
-            new = ~touched & (seen["touch"][:, 0] > 0)
-            after[new], touched = arm[new], touched | new
-        felt, _ = move(after, self.reflex, 45)
-        force = felt["touch"] > 0
-        kept = touched & force[:, 2] & (force[:, 0] | force[:, 1])
-        return kept, away, before, after, self.joints.posture(felt)[:, 2:]
+            senses, arm = self.move(np.where(touched, after, before + advance * way), OPEN, 1)
+            new = ~touched & (senses["touch"][:, :1] > 0)
+            after, touched = np.where(new, arm, after), touched | new
+        senses, _ = self.move(after, self.reflex, 45)
+        kept = touched[:, 0] & feels(senses)
+        return kept, seen, before, after, self.joints.posture(senses)[:, 2:]
 
-    def predict(self, observation: Any, state: Any, episode_start: Any, _: Any = None) -> Any:
-        """Goes to the recalled arm, advances until the palm touches, and closes the hand."""
-        seen = {name: np.atleast_2d(sense) for name, sense in observation.items()}
-        arm, felt = self.joints.posture(seen)[:, :2], seen["touch"][:, 0] > 0
-        if state is None:
-            names = {"before": 2, "way": 2, "hand": 2, "steps": 1, "touched": 1, "stopped": 2}
-            state = {name: np.zeros((len(arm), n)) for name, n in names.items()}
-        new = np.flatnonzero(episode_start)
-        if len(new):
-            before, after, hand = self.recall({name: sense[new] for name, sense in seen.items()})
-            state["before"][new], state["way"][new] = before, after - before
-            state["hand"][new] = np.minimum(hand + np.radians(20), self.reflex)
-            state["steps"][new] = state["touched"][new] = 0
-        touching = felt & (state["touched"][:, 0] == 0)
-        state["stopped"][touching], state["touched"][touching] = arm[touching], 1
-        near = np.abs(arm - state["before"]).max(1) < NEAR
-        state["steps"][near | (state["steps"][:, 0] > 0)] += 1
-        length = np.maximum(np.abs(state["way"]).max(1, keepdims=True), STEP)
-        advance = np.minimum(STEP * state["steps"] / length, BEYOND)
-        points = np.where(
-            state["touched"] > 0,
-            np.hstack([state["stopped"], state["hand"]]),
-            np.hstack([state["before"] + advance * state["way"], np.zeros((len(arm), 2))]),
-        )
-        actions = self.joints.actions(points, seen)
-        return (actions if np.ndim(episode_start) else actions[0]), state
+
+def feels(senses: Any) -> Any:
+    """Whether fingers and palm, or fingers and thumb, feel an object (n,)."""
+    palm, thumb, fingers = (senses["touch"] > 0).T
+    return fingers & (palm | thumb)
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--babbles", type=int, default=1000, help="babbles to learn from")
     parser.add_argument("--cases", type=int, default=300, help="test cases of each size")
-    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--json", action="store_true", help="print one JSON document")
     arguments = parser.parse_args()
-    chain = Chain(arguments.seed).learn(arguments.babbles)
-    seconds = time.process_time()
-    print(f"{chain.babbled} babbles, {chain.learnt} learnt from, {seconds:.0f} s of CPU time")
-    for cm in (2.4, 4, 6):  # 4 cm was never babbled.
-        cases = gym_babble.scenarios("palm_side", arguments.cases, 2000, diameters=[cm / 100])
-        print(f"{cm} cm: held {gym_babble.evaluate(chain, cases=cases).rate('held'):.3f}")
+    rows = []
+    for seed in range(arguments.seeds):
+        chain = Chain(seed).learn(arguments.babbles)
+        for cm in (2.4, 4, 6):  # 4 cm was never babbled.
+            cases = gym_babble.scenarios("palm_side", arguments.cases, 2000, diameters=[cm / 100])
+            held = gym_babble.evaluate(chain, cases=cases).rate("held")
+            rows.append({"seed": seed, "babbled": chain.babbled, "cm": cm, "held": held})
+    if arguments.json:
+        print(json.dumps(rows))
+    else:
+        for row in rows:
+            print("seed {seed}, {babbled} babbles, {cm} cm: held {held:.3f}".format(**row))

@@ -1,16 +1,20 @@
-"""SAC with hindsight experience replay on the goal form of reaching (stable-baselines3).
+"""SAC with hindsight experience replay on the goal forms of both tasks (stable-baselines3).
 
-The reward only says whether the fingertip is at the target (0) or not (-1). Hindsight replay
-treats the place that was reached as the target, and `compute_reward` computes the new reward.
+The reward only says whether the fingertip is at the target, or the object at its goal (0), or not
+(-1). Hindsight replay treats the place that was reached as the target, and `compute_reward`
+computes the new reward.
 
-There is no obstacle by default. An obstacle stands on the straight path to every target; with it
-(--obstacle), hindsight learns to reach straight into it and needs far more steps than these. See
-docs/baselines.md.
+In reaching there is no obstacle by default. An obstacle stands on the straight path to every
+target; with it (--obstacle), hindsight learns to reach straight into it and needs far more steps
+than these. See docs/baselines.md; on carrying, docs/beyond-the-paper.md.
 
 python examples/sac_her.py               # 100,000 steps: about 8 minutes on one core
+python examples/sac_her.py --env BabbleGraspGoal-v0 --out carry.zip
+python examples/grasp_carry.py --agent carry.zip          # Counts what the hand still holds.
 """
 
 import argparse
+import json
 
 import torch
 from stable_baselines3 import SAC, HerReplayBuffer
@@ -18,18 +22,23 @@ from stable_baselines3 import SAC, HerReplayBuffer
 from gym_babble import evaluate, scenarios
 from gym_babble.sb3 import BabbleVecEnv, ProgressBar
 
-ENV = "BabbleReachGoal-v0"
+REACH = "BabbleReachGoal-v0"
 
 parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("--env", default=REACH, choices=[REACH, "BabbleGraspGoal-v0"])
+parser.add_argument("--options", type=json.loads, default={}, help="of the environment, as JSON")
 parser.add_argument("--steps", type=int, default=100_000)
-parser.add_argument("--cases", type=int, default=1_000, help="cases of Table I to be tested on")
+parser.add_argument("--seed", type=int, default=0)
+parser.add_argument("--cases", type=int, default=1_000, help="cases to be tested on")
 parser.add_argument("--obstacle", action="store_true", help="with the obstacle")
+parser.add_argument("--out", help="file for the model")
 arguments = parser.parse_args()
 
 torch.set_num_threads(1)
-env = BabbleVecEnv(ENV, 16)
-cases = scenarios("table1", arguments.cases)
-if not arguments.obstacle:
+env = BabbleVecEnv(arguments.env, 16, **arguments.options)
+protocol = "table1" if arguments.env == REACH else "palm_side"
+cases = scenarios(protocol, arguments.cases, goal=arguments.env != REACH)
+if arguments.env == REACH and not arguments.obstacle:
     env.set_options({"obstacle": None})
     cases = [{**case, "obstacle": None} for case in cases]
 model = SAC(
@@ -42,11 +51,13 @@ model = SAC(
     gradient_steps=8,
     learning_rate=1e-3,
     gamma=0.98,
-    seed=0,
+    seed=arguments.seed,
     device="cpu",
 )
 model.learn(arguments.steps, callback=ProgressBar())
 env.close()
+if arguments.out:
+    model.save(arguments.out)
 
 result = evaluate(model, cases=cases)
 low, high = result.interval("success")

@@ -14,6 +14,7 @@ import warnings
 from gym_babble._core import __version__, debug_build
 from gym_babble.agents import (
     Agent,
+    ChainAgent,
     Experiences,
     GoalBabbling,
     HebbBabbling,
@@ -36,6 +37,7 @@ from gym_babble.study.scenarios import Scenario, scenarios
 
 __all__ = [
     "Agent",
+    "ChainAgent",
     "Config",
     "Evaluation",
     "Experiences",

@@ -154,14 +154,14 @@ def _with_span(rates: list[float]) -> str:
 
 def changed_body(stores: Stores) -> str:
     """How far agents fall in a changed body, and after how much learning they are back."""
-    rates: dict[tuple[str, str], dict[int | None, str]] = {}
+    rates: dict[tuple[str, str], dict[int | None, list[float]]] = {}
     for row in (row for run in stores["changed_body"].values() for row in run):
         which = row["agent"], row["change"]
-        rates.setdefault(which, {})[row["movements"]] = share(row["success"])
+        rates.setdefault(which, {})[row["movements"]] = row["by_seed"]
     rows = []
     for which, found in rates.items():
-        at_once, alone = found.pop(0), found.pop(None)
-        later = [f"{rate} after {budget:,}" for budget, rate in found.items()]
+        at_once, alone = _with_span(found.pop(0)), _with_span(found.pop(None))
+        later = [f"{share(fmean(seeds))} after {budget:,}" for budget, seeds in found.items()]
         rows.append([*which, at_once, ", ".join(later), alone])
     return markdown(["agent", "change", "at once", "after learning on", "learnt there alone"], rows)
 

@@ -49,6 +49,10 @@ STORES: dict[str, dict[str, str]] = {
         "curves": "python examples/curves.py",
         "rules": "python examples/own_rule.py --movements 2000",
     },
+    "own_chain": {
+        "chain": "python examples/own_chain.py",
+        "chunk": "python examples/own_chunk.py",
+    },
     "solved": {id_: f"python examples/solvable.py --ids {id_}" for id_ in SOLVED},
     "sensitivity": {"rows": "python examples/sensitivity.py"},
     "vote": {"rows": "python examples/obstacle_alone.py"},
@@ -58,9 +62,9 @@ STORES: dict[str, dict[str, str]] = {
         "fine": f'{READOUTS} --bodies paper --movements 20000 --networks "fine obstacle, Hebb"',
     },
     "changed_body": {
-        "conjunctive": f'{CHANGED_BODY} --movements 4000 --seeds 1 --agents "Hebb `conjunctive`"',
-        "paper": f'{CHANGED_BODY} --movements 4000 --seeds 1 --agents "Hebb `paper`"',
-        "ppo": f"{CHANGED_BODY} --agents PPO --seeds 1 --ppo-repair 1024 4096 --changes none "
+        "conjunctive": f'{CHANGED_BODY} --movements 4000 --agents "Hebb `conjunctive`"',
+        "paper": f'{CHANGED_BODY} --movements 4000 --agents "Hebb `paper`"',
+        "ppo": f"{CHANGED_BODY} --agents PPO --ppo-repair 1024 4096 --changes none "
         '"elbow to 85°" "a fifth of the stiffness" "eye 4 cm to the right"',
     },
     "fig4": {"paper": "gym-babble reproduce fig4"},
@@ -111,9 +115,16 @@ def derived(stores: Stores) -> dict[str, float]:
     for row in stores["chain"]["paper"]:
         if not row["practised"]:
             held.setdefault((row["learnt"], row["diameter_cm"]), []).append(row["kept"])
+    own_chain = {
+        f"own_chain_{cm:g}": fmean(
+            row["held"] for row in stores["own_chain"]["chain"] if row["cm"] == cm
+        )
+        for cm in (2.4, 4, 6)
+    }
     voted = {choice: found["success"] for choice, found in stores["vote"]["rows"].items()}
     (fine,) = (row["success"] for row in stores["readouts"]["fine"] if row["readout"] == "peak")
     return {
+        **own_chain,
         "chain_small": fmean(held[1_000, 2.4]),
         "chain_small_100": fmean(held[100, 2.4]),
         "chain_unseen": fmean(held[1_000, 4.0]),

@@ -50,6 +50,7 @@ ABLATIONS = {
     "chain-random-reach": "random reaches, with advance and reflex",
     "reflex-only": "random babbles, with the reflex",
     "hebb-paper": "the paper's agent",
+    "nearest-neighbour-chain": "nearest neighbours of the chain's babbles",
     "nearest-neighbour": "nearest neighbours of the paper's babbles",
     "goal-babbling": "goal babbling",
     "ppo": "PPO",

@@ -93,10 +93,13 @@ RUNS = {
         ),
         r"\| PPO \| elbow to 100° \| there alone \| \d\.\d{3} \| \d\.\d{3} \|",
     ),
-    "own_chain.py": ("--babbles 5 --cases 4", r"6 cm: held [01]\.\d{3}"),
+    "own_chain.py": (
+        "--babbles 5 --cases 4 --seeds 1",
+        r"seed 0, 50 babbles, 6 cm: held [01]\.\d{3}",
+    ),
     "own_chunk.py": (
-        "--babbles 5 --cases 4",
-        r"400 steps: held [01]\.\d{3} by the chain, [01]\.\d{3} with the chunk",
+        "--babbles 5 --cases 4 --seeds 1",
+        r"chunk: held [01]\.\d{3} \([01]\.\d{3}\)",
     ),
     "sac_her.py": ("--steps 4000 --cases 20", r"success 0\.\d+ \[0\.\d+, .+\]"),
 }

@@ -91,6 +91,7 @@ def test_options_beside_a_scenario_replace_its_parts():
         ({"protocol": "table1", "n": 2, "config": "tall"}, "tall"),
         ({"protocol": "table1", "n": 2, "seed": -1}, "seed"),
         ({"protocol": "table1", "n": 2, "seed": 2**64}, "seed"),
+        ({"protocol": "table1", "diameters": [0.03]}, r"diameters = \[0.03\]: reaching has no"),
     ],
     ids=str,
 )

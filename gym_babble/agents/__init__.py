@@ -2,6 +2,7 @@
 
 from gym_babble.agents.babbling import Experiences, babble
 from gym_babble.agents.base import Agent
+from gym_babble.agents.chain import ChainAgent
 from gym_babble.agents.goal_babbling import GoalBabbling
 from gym_babble.agents.hebb import HebbBabbling
 from gym_babble.agents.joints import Joints
@@ -12,6 +13,7 @@ from gym_babble.agents.reward_hebb import RewardHebb
 
 __all__ = [
     "Agent",
+    "ChainAgent",
     "Experiences",
     "GoalBabbling",
     "HebbBabbling",

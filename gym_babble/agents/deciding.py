@@ -52,15 +52,19 @@ class Learning(Planner):
     ARRAYS: ClassVar[tuple[str, ...]]
     """Attributes that learning changes, float32 arrays: they and the counts are all of it."""
 
-    def __init__(self, env: EnvLike, seed: int, settings: Mapping[str, Any]) -> None:
+    def __init__(
+        self, env: EnvLike, seed: int, settings: Mapping[str, Any], *, chain: bool = False
+    ) -> None:
+        """With `chain`, in grasping, it babbles and acts by the chain, not as in the paper."""
         super().__init__(env)
+        self._chain = chain
         task = self._interface.entry.name
         if task not in self.TASKS:
             raise ConfigError(
                 f"{type(self).__name__} learns in {' and '.join(self.TASKS)}, and "
                 f"{shown(env)} is {task_entry(task).title}"
             )
-        _core.check_deciding(self._interface.task)
+        _core.check_deciding(self._interface.task, chain=chain)
         self._config = self._interface.task.config()
         self._seed, self._settings = check_seed(seed), dict(settings)
         self._babbled = self._learnt = 0
@@ -93,7 +97,14 @@ class Learning(Planner):
     @property
     def steps_per_babble(self) -> int:
         """Control steps that a movement or babble takes."""
-        return _core.babble_steps(self._learns_in().task)
+        return _core.babble_steps(self._learns_in().task, self._babbling)
+
+    @property
+    def _babbling(self) -> str:
+        """How babbles are simulated, as JSON."""
+        if not self._chain:
+            return "null"
+        return json.dumps(json.loads(_core.brain_json("grasp", "chain"))["babble"])
 
     @property
     def control_steps(self) -> int:
@@ -167,7 +178,8 @@ class Learning(Planner):
         """What it chooses for one observation (k,), or for n of them (n, k).
 
         In reaching, parameters (b1, b2) of a movement; in grasping, shoulder, elbow, and flexions
-        of thumb and finger once the hand closes [rad].
+        of thumb and finger once the hand closes [rad]. In the chain, shoulder and elbow before the
+        grasp, shoulder and elbow at contact, and the flexions [rad].
         """
         senses = self._senses(observation)
         chosen = self._decide(np.atleast_2d(senses))
@@ -176,7 +188,8 @@ class Learning(Planner):
     def _act(
         self, senses: NDArray[np.float32], starts: list[bool], plans: _core.Plans | None
     ) -> tuple[NDArray[np.float32], _core.Plans]:
-        return _core.act_on(self._interface.task, self._decide, senses, starts, plans)
+        task = self._interface.task
+        return _core.act_on(task, self._decide, senses, starts, plans, chain=self._chain)
 
     def _learns_in(self) -> Interface:
         """An environment of the config and control that it learns in."""
@@ -240,7 +253,7 @@ class Learning(Planner):
             if interface.entry.name != agent._interface.entry.name:  # noqa: SLF001 - its own
                 title = agent._interface.entry.title  # noqa: SLF001 - its own
                 raise ConfigError(f"{shown(env)} is not a Babble environment for {title}")
-            _core.check_deciding(interface.task)
+            _core.check_deciding(interface.task, chain=agent._chain)  # noqa: SLF001 - its own
             agent._interface = interface  # noqa: SLF001 - its own
         return agent
 

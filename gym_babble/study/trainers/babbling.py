@@ -60,8 +60,8 @@ class BabblingTrainer:
 
 
 def nearest_neighbours(order: Order) -> BabblingTrainer:
-    """Random babbling with a nearest-neighbour inverse model; its setting is `k`."""
-    settings = check_settings(order, ("k",))
+    """Random babbling with a nearest-neighbour inverse model; its settings are `k`, `babbling`."""
+    settings = check_settings(order, ("k", "babbling"))
     arguments = arguments_of(order, ACTS_IN[order.task])
     agent = NearestNeighbours(arguments.single(), seed=order.seed, threads=1, **settings)
     return BabblingTrainer(agent, arguments)

@@ -12,15 +12,16 @@ use serde_json::Value;
 
 use crate::babbling::{Babble, Babbling, Column, babble};
 use crate::chain::ChainNetwork;
+use crate::chain::acting::ChainPolicy;
 use crate::error::AgentError;
 use crate::grasp::babbling::POSTURES;
 use crate::grasp::policy::{self as grasping, GraspPolicy, RandomActions};
-use crate::grasp::{self, GraspBabbling, GraspNetwork};
+use crate::grasp::{self, GraspNetwork};
 use crate::learner::{Learner, Practice};
 use crate::network::{Network, Percept, Recall};
 use crate::policy::{Decisions, Policy, Random};
+use crate::reach::ReachNetwork;
 use crate::reach::policy::{self as reaching, ReachPolicy};
-use crate::reach::{ReachBabbling, ReachNetwork};
 use crate::rule::RuleOfOnesOwn;
 use crate::tensors;
 
@@ -76,6 +77,22 @@ pub fn deciding<'a>(
     }
     let task = downcast::<GraspTask>(task).ok_or_else(other_task)?;
     boxed(GraspPolicy::new(task, decisions))
+}
+
+/// An agent of grasping that acts by the chain on postures which somebody else chooses: shoulder and elbow
+/// before the grasp and at contact, and flexions of thumb and finger once the hand closes \[rad\].
+///
+/// # Errors
+/// As [`deciding`].
+pub fn chaining<'a>(
+    task: &Arc<dyn AnyTask>,
+    decisions: Decisions<'a>,
+) -> Result<Box<dyn Policy + 'a>, AgentError> {
+    let task = downcast::<GraspTask>(task).ok_or_else(|| AgentError::Config {
+        field: "env",
+        problem: "the chain acts in grasping alone".to_owned(),
+    })?;
+    boxed(ChainPolicy::new(task, decisions))
 }
 
 fn boxed<'a>(
@@ -437,7 +454,7 @@ pub fn babble_any(
 }
 
 /// The babbles after `babbled` ones of a seed, of which `learnt` could be learnt from, until `n` more can
-/// be: what these leave behind, and both counts after them.
+/// be: what these leave behind, and both counts after them. `options` say how they are simulated, as JSON.
 ///
 /// # Errors
 /// As [`babble_any`] and [`Babbling::experience`].
@@ -445,27 +462,28 @@ pub fn learnable_any(
     task: &Arc<dyn AnyTask>,
     n: usize,
     seed: u64,
-    [babbled, learnt]: [u64; 2],
+    counts: [u64; 2],
+    options: Value,
     period_s: Option<f64>,
     executor: &mut Executor,
 ) -> Result<(Experiences, [u64; 2]), AgentError> {
+    let [babbled, learnt] = counts;
     if let Some(task) = downcast::<ReachTask>(task) {
-        return learnable(&*task, n, seed, [babbled, learnt], period_s, executor);
+        let babbling = Babbling::resume(seed, options_of::<ReachTask>(options)?, babbled, learnt);
+        return learnable(babbling.every(period_s)?, &*task, n, executor);
     }
     let task = downcast::<GraspTask>(task).ok_or_else(other_task)?;
-    learnable(&*task, n, seed, [babbled, learnt], period_s, executor)
+    let babbling = Babbling::resume(seed, options_of::<GraspTask>(options)?, babbled, learnt);
+    learnable(babbling.every(period_s)?, &*task, n, executor)
 }
 
 fn learnable<T: Babble>(
+    mut babbling: Babbling<T>,
     task: &T,
     n: usize,
-    seed: u64,
-    [babbled, learnt]: [u64; 2],
-    period_s: Option<f64>,
     executor: &mut Executor,
 ) -> Result<(Experiences, [u64; 2]), AgentError> {
-    let options = T::Options::default();
-    let mut babbling = Babbling::<T>::resume(seed, options, babbled, learnt).every(period_s)?;
+    let learnt = babbling.learnt();
     let found = babbling.by_babble(task, n, executor)?;
     let counts = [babbling.babbled(), babbling.learnt()];
     Ok((Experiences::of::<T>(learnt, &found), counts))
@@ -493,16 +511,16 @@ pub fn babble_to(
     ))
 }
 
-/// Control steps that a babble of the paper takes in a task of any kind.
+/// Control steps that a babble takes in a task of any kind; `options` say how it is simulated, as JSON.
 ///
 /// # Errors
-/// [`AgentError::Config`] for a task without babbles.
-pub fn babble_steps(task: &Arc<dyn AnyTask>) -> Result<usize, AgentError> {
+/// [`AgentError::Config`] for a task without babbles, or options that it does not have.
+pub fn babble_steps(task: &Arc<dyn AnyTask>, options: Value) -> Result<usize, AgentError> {
     if let Some(task) = downcast::<ReachTask>(task) {
-        return Ok(task.babble_steps(ReachBabbling::default()));
+        return Ok(task.babble_steps(options_of::<ReachTask>(options)?));
     }
     let task = downcast::<GraspTask>(task).ok_or_else(other_task)?;
-    Ok(task.babble_steps(GraspBabbling::default()))
+    Ok(task.babble_steps(options_of::<GraspTask>(options)?))
 }
 
 fn columns<T: Babble + Task>(

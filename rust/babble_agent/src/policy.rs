@@ -94,7 +94,10 @@ pub trait Policy: fmt::Debug + Send + Sync {
     fn decide(&self, senses: &[f32], executor: &mut Executor) -> Result<Vec<Vec<f64>>, AgentError>;
 
     /// The next action of an episode.
-    fn act(&self, plan: &mut Plan, senses: &[f32], action: &mut [f32]);
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan), of an agent that looks again on its way.
+    fn act(&self, plan: &mut Plan, senses: &[f32], action: &mut [f32]) -> Result<(), AgentError>;
 }
 
 /// Chooses at random: choice k depends on the seed and k alone.
@@ -209,7 +212,7 @@ pub fn predict(
     let mut actions = vec![0.0; n * action_len];
     let each = senses.chunks_exact(width).zip(plans.iter_mut());
     for ((senses, plan), action) in each.zip(actions.chunks_exact_mut(action_len)) {
-        policy.act(plan, senses, action);
+        policy.act(plan, senses, action)?;
     }
     Ok(actions)
 }

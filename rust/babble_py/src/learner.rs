@@ -314,10 +314,11 @@ pub(crate) fn brain_json(task: &str, variant: &str) -> PyResult<String> {
     convert::json(&erased::brain_of(task, variant).map_err(errors::agent)?)
 }
 
-/// Control steps that a babble takes.
+/// Control steps that a babble takes; `babbling` says how it is simulated, as JSON.
 #[pyfunction]
-pub(crate) fn babble_steps(task: &Task) -> PyResult<usize> {
-    erased::babble_steps(&task.task).map_err(errors::agent)
+pub(crate) fn babble_steps(task: &Task, babbling: &str) -> PyResult<usize> {
+    let options = value("babbling", babbling)?;
+    erased::babble_steps(&task.task, options).map_err(errors::agent)
 }
 
 /// The first `n` babbles of a seed, with an experience at the end of each or every `period_s` seconds:
@@ -348,7 +349,7 @@ pub(crate) fn babble<'py>(
 #[pyfunction]
 #[expect(
     clippy::too_many_arguments,
-    reason = "one more than allowed, for Python's lock"
+    reason = "two more than allowed, for Python's lock and two counts"
 )]
 pub(crate) fn learnable_babbles<'py>(
     py: Python<'py>,
@@ -357,13 +358,15 @@ pub(crate) fn learnable_babbles<'py>(
     seed: u64,
     babbled: u64,
     learnt: u64,
+    babbling: &str,
     period_s: Option<f64>,
     threads: usize,
 ) -> PyResult<(Bound<'py, PyDict>, u64, u64)> {
+    let (options, counts) = (value("babbling", babbling)?, [babbled, learnt]);
     let (found, [babbled, learnt]) = py
         .detach(|| {
             let executor = &mut signals::executor(threads)?;
-            erased::learnable_any(&task.task, n, seed, [babbled, learnt], period_s, executor)
+            erased::learnable_any(&task.task, n, seed, counts, options, period_s, executor)
         })
         .map_err(errors::agent)?;
     Ok((columns(py, found)?, babbled, learnt))

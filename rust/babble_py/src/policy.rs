@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use babble_agent::erased::deciding;
+use babble_agent::erased::{chaining, deciding};
 use babble_agent::{AgentError, Decisions, Plan, Policy, Random, predict, reference};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -40,6 +40,15 @@ impl Plans {
             _ => false,
         });
         PyArray1::from_vec(py, touched.collect())
+    }
+
+    /// Name of the chain's phase that is played in each environment; empty for other plans.
+    fn phases(&self) -> Vec<&'static str> {
+        let name = |plan: &Plan| match plan {
+            Plan::Chain(chain) => chain.phase.name(),
+            _ => "",
+        };
+        self.plans.iter().map(name).collect()
     }
 }
 
@@ -81,8 +90,8 @@ pub(crate) fn decide<'py>(
     convert::table(py, width, decided.iter().map(Vec::as_slice))
 }
 
-/// Actions (n, k) on decisions that `decide` makes for the flat senses (m, k) of the environments that
-/// begin an episode, and the plans for the next call.
+/// Actions (n, k) on decisions that `decide` makes for the flat senses (m, k) of environments that begin
+/// an episode, and the plans for the next call. In a `chain` it decides again when the agent looks again.
 #[pyfunction]
 pub(crate) fn act_on<'py>(
     py: Python<'py>,
@@ -91,6 +100,7 @@ pub(crate) fn act_on<'py>(
     senses: PyReadonlyArray2<'py, f32>,
     starts: Vec<bool>,
     plans: Option<&Plans>,
+    chain: bool,
 ) -> PyResult<(Bound<'py, PyArray2<f32>>, Plans)> {
     let raised = OnceLock::new();
     let width = senses.as_array().shape()[1];
@@ -104,18 +114,26 @@ pub(crate) fn act_on<'py>(
             }
         })
     };
-    let policy = deciding(&task.task, Decisions(&asked)).map_err(errors::agent)?;
+    let policy = policy_on(task, chain, Decisions(&asked))?;
     let acted = act(py, &*policy, &senses, &starts, plans, 1);
     drop(policy);
     acted.map_err(|error| raised.into_inner().unwrap_or(error))
 }
 
-/// Checks that decisions can be acted on in a task.
+/// Checks that decisions can be acted on in a task, by the chain or otherwise.
 #[pyfunction]
-pub(crate) fn check_deciding(task: &Task) -> PyResult<()> {
+pub(crate) fn check_deciding(task: &Task, chain: bool) -> PyResult<()> {
     let none = |_: &[f32]| Ok(Vec::new());
-    let policy = deciding(&task.task, Decisions(&none));
-    policy.map(|_| ()).map_err(errors::agent)
+    policy_on(task, chain, Decisions(&none)).map(|_| ())
+}
+
+fn policy_on<'a>(
+    task: &Task,
+    chain: bool,
+    decisions: Decisions<'a>,
+) -> PyResult<Box<dyn Policy + 'a>> {
+    let policy = if chain { chaining } else { deciding };
+    policy(&task.task, decisions).map_err(errors::agent)
 }
 
 /// What a function of Python decides for flat senses of that width.

@@ -4,16 +4,15 @@
 use std::sync::Arc;
 
 use babble_env::tasks::grasp::{SENSES, at};
-use babble_env::{Control, Executor, GraspTask, Purpose, Stream, Task};
+use babble_env::{Control, Executor, GraspTask};
 
 use super::chunks::ADVANCE_S;
 use super::infant::ADVANCE_RAD;
-use super::network::{ChainNetwork, Recalled};
-use super::plan::{ChainPlan, Phase, Targets};
+use super::plan::{Carrying, ChainPlan, Phase, Targets};
 use super::route::{Detour, RouteChoice, Routes, State};
+use super::targets::ChooseTargets;
 use crate::error::AgentError;
 use crate::grasp::policy::towards;
-use crate::network::Network;
 use crate::policy::{Plan, Policy, observation};
 
 /// Control steps that each part of a detour takes at most.
@@ -43,19 +42,19 @@ pub(super) struct Felt {
     pub grips: bool,
 }
 
-/// An agent that acts on a network's recall.
+/// An agent that acts on what a network recalls, or on targets from elsewhere.
 #[derive(Debug)]
-pub struct ChainPolicy<'a> {
-    pub(super) task: Arc<GraspTask>,
-    pub(super) network: &'a ChainNetwork,
+pub struct ChainPolicy<C> {
+    task: Arc<GraspTask>,
+    choice: C,
 }
 
-impl<'a> ChainPolicy<'a> {
+impl<C: ChooseTargets> ChainPolicy<C> {
     /// An agent for a task.
     ///
     /// # Errors
     /// [`AgentError::Config`] for `torque` control, in which there are no postures to plan.
-    pub fn new(task: Arc<GraspTask>, network: &'a ChainNetwork) -> Result<Self, AgentError> {
+    pub fn new(task: Arc<GraspTask>, choice: C) -> Result<Self, AgentError> {
         if task.options.control == Control::Torque {
             return Err(AgentError::Config {
                 field: "control",
@@ -63,21 +62,19 @@ impl<'a> ChainPolicy<'a> {
                     .to_owned(),
             });
         }
-        Ok(Self { task, network })
+        Ok(Self { task, choice })
     }
 
     /// A plan for a flat observation, by a route that `choose` finds for its state.
     ///
     /// # Errors
-    /// [`AgentError`] for senses of another length.
+    /// [`AgentError`] for senses of another length, or as [`ChooseTargets::targets`].
     pub fn begin(
         &self,
         senses: &[f32],
         choose: impl FnOnce(&State) -> RouteChoice,
     ) -> Result<ChainPlan, AgentError> {
-        let carrying = self.carrying(senses)?;
-        // The senses that an option adds come last.
-        let senses = observation::<SENSES>(&senses[..senses.len().min(SENSES)])?;
+        let carrying = self.choice.at_goal(&self.task, senses)?;
         let targets = self.targets(senses)?;
         let felt = self.felt(senses);
         let choice = choose(&self.state(&felt, &targets));
@@ -87,7 +84,10 @@ impl<'a> ChainPolicy<'a> {
             step: 0,
             choice,
             targets,
-            carrying,
+            carrying: carrying.map(|posture| Carrying {
+                posture,
+                gripped: 0,
+            }),
             from: felt.arm,
             fist: detour,
             loose: 0,
@@ -107,21 +107,9 @@ impl<'a> ChainPolicy<'a> {
     }
 
     fn targets(&self, senses: &[f32]) -> Result<Targets, AgentError> {
-        let mut recalled = self.network.recalled(senses)?;
-        let brain = self.network.config();
-        if !brain.targets {
-            randomise(&mut recalled, senses);
-        }
-        let reflex = self.task.reflex();
-        Ok(Targets {
-            pregrasp: self.task.arm.denormalised(recalled.pregrasp),
-            contact: self.task.arm.denormalised(recalled.contact),
-            grip: 1.0 - recalled.hand[1] / 90.0,
-            hand: [0, 1].map(|i| {
-                let flexion = 90.0 - recalled.hand[i] + brain.squeeze_deg;
-                flexion.to_radians().min(reflex[i])
-            }),
-        })
+        // The senses that an option adds come last.
+        let senses = observation(&senses[..senses.len().min(SENSES)])?;
+        self.choice.targets(&self.task, senses)
     }
 
     fn felt(&self, senses: &[f32]) -> Felt {
@@ -140,8 +128,13 @@ impl<'a> ChainPolicy<'a> {
     }
 
     /// Moves a plan on by what is felt, and the posture that the muscles are to pull to \[rad\].
-    fn wanted(&self, plan: &mut ChainPlan, felt: &Felt, senses: &[f32]) -> [f64; 4] {
-        self.proceed(plan, felt, senses);
+    fn wanted(
+        &self,
+        plan: &mut ChainPlan,
+        felt: &Felt,
+        senses: &[f32],
+    ) -> Result<[f64; 4], AgentError> {
+        self.proceed(plan, felt, senses)?;
         plan.step += 1;
         let arm = self.arm_target(plan);
         let ranges = self.task.robot.ranges();
@@ -152,7 +145,7 @@ impl<'a> ChainPolicy<'a> {
             }
             _ => [ranges[2][0], ranges[3][0]],
         };
-        [arm[0], arm[1], hand[0], hand[1]]
+        Ok([arm[0], arm[1], hand[0], hand[1]])
     }
 
     /// Shoulder and elbow to head for in this control step.
@@ -178,7 +171,7 @@ impl<'a> ChainPolicy<'a> {
     /// How far the arm has advanced, as a share of the way from the posture before the grasp to contact.
     fn share(&self, plan: &ChainPlan) -> f64 {
         let share = f64::from(plan.step) * Self::advance_step(plan);
-        if self.network.config().advance {
+        if self.choice.advance() {
             share
         } else {
             share.min(1.0)
@@ -210,8 +203,8 @@ impl<'a> ChainPolicy<'a> {
     }
 
     /// Goes over to the next link once this one is done.
-    fn proceed(&self, plan: &mut ChainPlan, felt: &Felt, senses: &[f32]) {
-        let brain = self.network.config();
+    fn proceed(&self, plan: &mut ChainPlan, felt: &Felt, senses: &[f32]) -> Result<(), AgentError> {
+        let reflex = self.choice.reflex();
         let [turn, fold, extend] = self.detour(plan);
         let near = |joint: usize, target: f64| (felt.arm[joint] - target).abs() < NEAR_DETOUR;
         match plan.phase {
@@ -222,10 +215,10 @@ impl<'a> ChainPolicy<'a> {
                 plan.enter(Phase::Extend, felt.arm);
             }
             Phase::Extend if plan.is_over(near(1, extend), DETOUR_STEPS) => {
-                self.look(plan, senses);
+                self.look(plan, senses)?;
                 plan.enter(Phase::Reach, felt.arm);
             }
-            Phase::Reach if brain.reflex && felt.palm && !plan.fist => {
+            Phase::Reach if reflex && felt.palm && !plan.fist => {
                 plan.enter(Phase::Close, felt.arm);
             }
             Phase::Reach if plan.is_over(Self::is_there(plan, felt), REACH_STEPS) => {
@@ -240,34 +233,40 @@ impl<'a> ChainPolicy<'a> {
                 plan.fist = false;
                 plan.enter(Phase::Advance, felt.arm);
             }
-            Phase::Advance if brain.reflex && felt.palm => plan.enter(Phase::Close, felt.arm),
-            Phase::Advance => self.end_advance(plan, felt, senses),
+            Phase::Advance if reflex && felt.palm => plan.enter(Phase::Close, felt.arm),
+            Phase::Advance => self.end_advance(plan, felt, senses)?,
             Phase::Close => {
                 plan.loose = if felt.grips { 0 } else { plan.loose + 1 };
                 Self::lift(plan, felt);
                 if plan.step >= CLOSE_STEPS && plan.loose > LOOSE_STEPS {
-                    self.look(plan, senses);
+                    self.look(plan, senses)?;
                     plan.enter(Phase::Reach, felt.arm);
                 }
             }
-            Phase::Carry => self.keep(plan, felt, senses),
+            Phase::Carry => self.keep(plan, felt, senses)?,
             _ => {}
         }
+        Ok(())
     }
 
     /// What an advance without a touch ends in: another try, or a hand that closes on what may be there.
-    fn end_advance(&self, plan: &mut ChainPlan, felt: &Felt, senses: &[f32]) {
+    fn end_advance(
+        &self,
+        plan: &mut ChainPlan,
+        felt: &Felt,
+        senses: &[f32],
+    ) -> Result<(), AgentError> {
         let seconds = f64::from(plan.step) * self.task.config.grasp.control_period_s;
         if seconds < ADVANCE_S {
-            return;
+            return Ok(());
         }
-        let brain = self.network.config();
-        if brain.reflex && brain.advance {
-            self.look(plan, senses);
+        if self.choice.reflex() && self.choice.advance() {
+            self.look(plan, senses)?;
             plan.enter(Phase::Reach, felt.arm);
         } else {
             plan.enter(Phase::Close, felt.arm);
         }
+        Ok(())
     }
 
     fn is_there(plan: &ChainPlan, felt: &Felt) -> bool {
@@ -275,17 +274,18 @@ impl<'a> ChainPolicy<'a> {
     }
 
     /// Looks again; what is seen now recalls the postures from now on.
-    pub(super) fn look(&self, plan: &mut ChainPlan, senses: &[f32]) {
-        if let Ok(targets) = self.targets(senses) {
-            plan.targets = targets;
-        }
+    ///
+    /// # Errors
+    /// As [`ChooseTargets::targets`].
+    pub(super) fn look(&self, plan: &mut ChainPlan, senses: &[f32]) -> Result<(), AgentError> {
+        plan.targets = self.targets(senses)?;
+        Ok(())
     }
 }
 
-impl Policy for ChainPolicy<'_> {
+impl<C: ChooseTargets> Policy for ChainPolicy<C> {
     fn senses_len(&self) -> usize {
-        // The goal comes after the senses.
-        self.task.senses_len() + if self.task.options.goal { 2 } else { 0 }
+        self.choice.senses_len(&self.task)
     }
 
     fn action_len(&self) -> usize {
@@ -295,7 +295,7 @@ impl Policy for ChainPolicy<'_> {
     fn plan(&self, senses: &[f32], executor: &mut Executor) -> Result<Vec<Plan>, AgentError> {
         let all: Vec<&[f32]> = senses.chunks_exact(self.senses_len()).collect();
         let plan = |senses: &[f32]| {
-            let plan = self.begin(senses, |state| self.network.best_route(state))?;
+            let plan = self.begin(senses, |state| self.choice.route(state))?;
             Ok(Plan::Chain(plan))
         };
         if let [one] = all[..] {
@@ -306,25 +306,18 @@ impl Policy for ChainPolicy<'_> {
 
     fn decide(&self, senses: &[f32], _: &mut Executor) -> Result<Vec<Vec<f64>>, AgentError> {
         let all = senses.chunks_exact(self.senses_len());
-        all.map(|senses| self.network.decide_from(senses)).collect()
+        let flat = |targets: Targets| [targets.pregrasp, targets.contact, targets.hand].concat();
+        all.map(|senses| self.targets(senses).map(flat)).collect()
     }
 
-    fn act(&self, plan: &mut Plan, senses: &[f32], action: &mut [f32]) {
+    fn act(&self, plan: &mut Plan, senses: &[f32], action: &mut [f32]) -> Result<(), AgentError> {
         let Plan::Chain(plan) = plan else {
-            return action.fill(0.0);
+            action.fill(0.0);
+            return Ok(());
         };
         let felt = self.felt(senses);
-        let wanted = self.wanted(plan, &felt, senses);
+        let wanted = self.wanted(plan, &felt, senses)?;
         towards(&self.task, wanted, senses, action);
+        Ok(())
     }
-}
-
-/// Random postures of the arm in place of the recalled ones, the same for the same senses.
-fn randomise(recalled: &mut Recalled, senses: &[f32]) {
-    let seed = senses[..at::FOVEA].iter().fold(0, |seed: u64, x| {
-        seed.rotate_left(16) ^ u64::from(x.to_bits())
-    });
-    let mut stream = Stream::new(Purpose::Policy, seed, 0);
-    recalled.pregrasp = [0, 1].map(|_| stream.uniform(0.0, 1.0));
-    recalled.contact = [0, 1].map(|_| stream.uniform(0.0, 1.0));
 }

@@ -4,8 +4,8 @@
 //! A babble is a list of [chunks](chunks), movements that infants make from birth on or soon after. It
 //! begins with the object in the hand and ends with the hand closed on it again. From the sight of the
 //! object in between, the network learns the posture before the grasp, the posture at contact, and the
-//! hand's ([`ChainNetwork`]). [`acting`] plays the last links of the chain on what is recalled, and
-//! [`practice`] learns by reward when to go around the object first.
+//! hand's ([`ChainNetwork`]). [`acting`] plays the last links of the chain on what is recalled, or on what
+//! an agent of a user's own says ([`targets`]), and [`practice`] learns by reward when to go around the object first.
 
 pub mod acting;
 pub mod brain;
@@ -17,7 +17,10 @@ mod network;
 pub mod plan;
 pub mod practice;
 pub mod route;
+pub mod targets;
 
 pub use brain::{ChainBrain, ChainName, Sequence, Withdrawal};
 pub use infant::babble;
 pub use network::{ChainNetwork, Recalled};
+pub use plan::Targets;
+pub use targets::ChooseTargets;

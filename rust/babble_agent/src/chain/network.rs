@@ -4,13 +4,15 @@ use std::sync::Arc;
 
 use babble_brain::{Association, PopulationMap};
 use babble_env::tasks::grasp::{FOVEA_NEURONS, SENSES, at};
-use babble_env::{Executor, GraspTask};
+use babble_env::{Executor, GraspTask, Purpose, Stream, Task};
 
 use super::acting::ChainPolicy;
 use super::brain::ChainBrain;
 use super::code::{Input, arm, hand, size};
+use super::plan::Targets;
 use super::practice;
 use super::route::{RouteChoice, Routes, State};
+use super::targets::ChooseTargets;
 use crate::error::AgentError;
 use crate::grasp::{Experience, GraspBabbling};
 use crate::learner::ROUND;
@@ -261,10 +263,56 @@ impl ChainNetwork {
         self.arm.read_out(&a, &mut posture)?;
         Ok(posture)
     }
+}
+
+impl ChooseTargets for &ChainNetwork {
+    /// What is recalled; the hand closes further by the squeeze, up to the reflex's flexion.
+    fn targets(&self, task: &GraspTask, senses: &[f32; SENSES]) -> Result<Targets, AgentError> {
+        let mut recalled = self.recalled(senses)?;
+        if !self.config.targets {
+            randomise(&mut recalled, senses);
+        }
+        let reflex = task.reflex();
+        Ok(Targets {
+            pregrasp: task.arm.denormalised(recalled.pregrasp),
+            contact: task.arm.denormalised(recalled.contact),
+            grip: 1.0 - recalled.hand[1] / 90.0,
+            hand: [0, 1].map(|i| {
+                let flexion = 90.0 - recalled.hand[i] + self.config.squeeze_deg;
+                flexion.to_radians().min(reflex[i])
+            }),
+        })
+    }
 
     /// The route that promises most.
-    #[must_use]
-    pub fn best_route(&self, state: &State) -> RouteChoice {
+    fn route(&self, state: &State) -> RouteChoice {
         self.routes.best(state)
     }
+
+    fn senses_len(&self, task: &GraspTask) -> usize {
+        // The goal comes after the senses.
+        task.senses_len() + if task.options.goal { 2 } else { 0 }
+    }
+
+    fn at_goal(&self, task: &GraspTask, senses: &[f32]) -> Result<Option<[f64; 2]>, AgentError> {
+        self.imagine(task, senses)
+    }
+
+    fn reflex(&self) -> bool {
+        self.config.reflex
+    }
+
+    fn advance(&self) -> bool {
+        self.config.advance
+    }
+}
+
+/// Random postures of the arm in place of the recalled ones, the same for the same senses.
+fn randomise(recalled: &mut Recalled, senses: &[f32]) {
+    let seed = senses[..at::FOVEA].iter().fold(0, |seed: u64, x| {
+        seed.rotate_left(16) ^ u64::from(x.to_bits())
+    });
+    let mut stream = Stream::new(Purpose::Policy, seed, 0);
+    recalled.pregrasp = [0, 1].map(|_| stream.uniform(0.0, 1.0));
+    recalled.contact = [0, 1].map(|_| stream.uniform(0.0, 1.0));
 }

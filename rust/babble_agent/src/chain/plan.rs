@@ -23,13 +23,33 @@ pub enum Phase {
     Carry,
 }
 
-/// Postures of a chain that is played \[rad\].
+impl Phase {
+    /// Its name in lower case.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Fold => "fold",
+            Self::Turn => "turn",
+            Self::Extend => "extend",
+            Self::Reach => "reach",
+            Self::Open => "open",
+            Self::Advance => "advance",
+            Self::Close => "close",
+            Self::Carry => "carry",
+        }
+    }
+}
+
+/// Postures of a grasp \[rad\].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Targets {
+pub struct Targets {
+    /// Shoulder and elbow before the grasp.
     pub pregrasp: [f64; 2],
+    /// Shoulder and elbow when the palm touches.
     pub contact: [f64; 2],
+    /// Flexions of thumb and finger once the hand closes.
     pub hand: [f64; 2],
-    /// Recalled flexion of the fingers around the object, over 90°.
+    /// Expected flexion of the fingers around the object, over 90°.
     pub grip: f64,
 }
 

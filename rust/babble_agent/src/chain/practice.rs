@@ -72,7 +72,7 @@ pub fn trials(
 fn trial(
     network: &ChainNetwork,
     task: &GraspTask,
-    policy: &ChainPolicy<'_>,
+    policy: &ChainPolicy<&ChainNetwork>,
     [cases, mut choices]: [Stream; 2],
     stop: &Stop<'_>,
 ) -> Result<Trial, AgentError> {
@@ -88,7 +88,7 @@ fn trial(
     let mut action = [0.0; 4];
     for steps in 1.. {
         stop.check()?;
-        policy.act(&mut plan, &senses, &mut action);
+        policy.act(&mut plan, &senses, &mut action)?;
         let step = episode.step(task, &action)?;
         if step.terminated || step.truncated {
             let held = FACTS.iter().position(|&fact| fact == "held");

@@ -68,7 +68,7 @@ pub struct RouteChoice {
 }
 
 impl RouteChoice {
-    fn new(number: usize, state: &State) -> Self {
+    pub(super) fn new(number: usize, state: &State) -> Self {
         let state = *state;
         Self { number, state }
     }

@@ -162,9 +162,10 @@ impl<C: ChooseGrasp> Policy for GraspPolicy<C> {
         Ok(chosen.iter().map(|grasp| grasp.posture.to_vec()).collect())
     }
 
-    fn act(&self, plan: &mut Plan, senses: &[f32], action: &mut [f32]) {
+    fn act(&self, plan: &mut Plan, senses: &[f32], action: &mut [f32]) -> Result<(), AgentError> {
         let Plan::Grasp(grasp) = plan else {
-            return action.fill(0.0);
+            action.fill(0.0);
+            return Ok(());
         };
         grasp.touched |= senses[at::TOUCH..SENSES].iter().any(|&force| force > 0.0);
         let mut wanted = grasp.posture;
@@ -175,6 +176,7 @@ impl<C: ChooseGrasp> Policy for GraspPolicy<C> {
         }
         grasp.step += 1;
         towards(&self.task, wanted, senses, action);
+        Ok(())
     }
 }
 
@@ -217,8 +219,9 @@ impl Policy for RandomActions<'_> {
         })
     }
 
-    fn act(&self, _plan: &mut Plan, _senses: &[f32], action: &mut [f32]) {
+    fn act(&self, _plan: &mut Plan, _senses: &[f32], action: &mut [f32]) -> Result<(), AgentError> {
         let mut stream = self.random.next();
         action.fill_with(|| stream.uniform(-1.0, 1.0) as f32);
+        Ok(())
     }
 }

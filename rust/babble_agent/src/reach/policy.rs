@@ -159,7 +159,7 @@ impl<C: ChooseMovement> Policy for ReachPolicy<C> {
         Ok(chosen.into_iter().map(|b| b.to_vec()).collect())
     }
 
-    fn act(&self, plan: &mut Plan, senses: &[f32], action: &mut [f32]) {
+    fn act(&self, plan: &mut Plan, senses: &[f32], action: &mut [f32]) -> Result<(), AgentError> {
         match plan {
             Plan::Movement(chosen) => action.copy_from_slice(chosen),
             Plan::Trajectory { shares, step } => {
@@ -171,6 +171,7 @@ impl<C: ChooseMovement> Policy for ReachPolicy<C> {
             }
             Plan::Steps | Plan::Grasp(_) | Plan::Chain(_) => action.fill(0.0),
         }
+        Ok(())
     }
 }
 

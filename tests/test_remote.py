@@ -297,6 +297,8 @@ def test_errors_are_those_of_a_local_environment(url):
     [
         ({"env_id": "BabbleReach-v1"}, "BabbleReach-v1"),
         ({"obs": "sense"}, "sense"),
+        ({"obs": np.array(["flat"])}, "obs"),
+        ({"width": np.nan}, "width"),
         ({"camera": 3}, "camera"),
         ({"retina": 3}, "retina_size"),
         ({"config": {"bdy": {}}}, "bdy"),

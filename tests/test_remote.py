@@ -85,12 +85,13 @@ def test_a_remote_batch_equals_a_local_one(mode, task, form, url):
 
 
 def compare_single(env_id, url, steps, **options):
-    local, remote = gymnasium.make(env_id, **options), RemoteEnv(env_id, url=url, **options)
+    local = gymnasium.make(env_id, **options).unwrapped
+    remote = RemoteEnv(env_id, url=url, **options)
     assert remote.observation_space == local.observation_space
     assert_same(remote.reset(seed=5), local.reset(seed=5))
     for action in drawn_actions(local.action_space, steps, 1):
         assert_same(rollout(remote, [action], reset=False), rollout(local, [action], reset=False))
-    assert remote.state_hash() == local.unwrapped.state_hash()
+    assert remote.state_hash() == local.state_hash()
     remote.close()
 
 
@@ -296,6 +297,8 @@ def test_errors_are_those_of_a_local_environment(url):
     [
         ({"env_id": "BabbleReach-v1"}, "BabbleReach-v1"),
         ({"obs": "sense"}, "sense"),
+        ({"obs": np.array(["flat"])}, "obs"),
+        ({"width": np.nan}, "width"),
         ({"camera": 3}, "camera"),
         ({"retina": 3}, "retina_size"),
         ({"config": {"bdy": {}}}, "bdy"),

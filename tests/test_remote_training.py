@@ -74,7 +74,7 @@ def test_hindsight_replay_asks_for_rewards(url):
     for at in (url, None):
         env = BabbleVecEnv("BabbleReachGoal-v0", 2, url=at, max_episode_steps=20)
         model = SAC("MultiInputPolicy", env, batch_size=32, **made)
-        model.learn(70)
+        model.learn(60)
         learnt.append({name: value.numpy() for name, value in model.policy.state_dict().items()})
         env.close()
     assert_same(*learnt)

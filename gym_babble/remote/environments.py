@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NoReturn
 from gymnasium.vector import AutoresetMode
 
 from gym_babble import _core
-from gym_babble.checks import check_number, check_threads, shown
+from gym_babble.checks import check_number, check_threads, plain, shown
 from gym_babble.envs import BabbleEnv, BabbleVectorEnv
 from gym_babble.envs.interface import Interface
 from gym_babble.envs.member import BatchMember, check_state
@@ -213,5 +213,5 @@ class RemoteVectorEnv(_Remote, BabbleVectorEnv):
 def _for_task(env_id: str, options: dict[str, Any]) -> dict[str, Any]:
     """The task of an id, and its options: those that the id presets, and those given."""
     row = environment(env_id)
-    _core.check_fixed(env_id, json.dumps(options))
+    _core.check_fixed(env_id, json.dumps(plain(options, "")))
     return {"task": row.task, **row.presets, **options}

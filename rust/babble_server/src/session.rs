@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use babble_env::batch::Record;
 use babble_env::case::CasePart;
@@ -16,6 +16,8 @@ use babble_env::{
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, RgbImage};
 use serde_json::Value;
+use tokio::runtime::{Handle, RuntimeFlavor};
+use tokio::task::block_in_place;
 
 use crate::fault::{Fault, Kind};
 use crate::limits::Limits;
@@ -31,12 +33,27 @@ const REPLAYED_STEPS: u64 = 10_000;
 thread_local! {
     /// When the request that runs in this thread has had its time.
     static DEADLINE: Cell<Option<Instant>> = const { Cell::new(None) };
+    /// Whether the thread was lent to others during this request.
+    static LENT: Cell<bool> = const { Cell::new(false) };
 }
 
+/// Asked every 50 ms of a request.
 fn is_late() -> bool {
+    if !LENT.replace(true) {
+        lend_thread();
+    }
     DEADLINE
         .get()
         .is_some_and(|deadline| Instant::now() > deadline)
+}
+
+/// Lets another thread take up what else waits for this one, if it serves connections: a request that
+/// was expected to be short is not. A moment's wait gives the other thread time to do so.
+fn lend_thread() {
+    let runtime = Handle::try_current().map(|handle| handle.runtime_flavor());
+    if matches!(runtime, Ok(RuntimeFlavor::MultiThread)) {
+        block_in_place(|| std::thread::sleep(Duration::from_millis(5)));
+    }
 }
 
 /// A batch of environments, and what was asked when it was made.
@@ -132,6 +149,7 @@ impl Session {
 
     /// Does a request within its time.
     pub fn timed<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        LENT.set(false);
         DEADLINE.set(Instant::now().checked_add(self.limits.request_time));
         let done = work(self);
         DEADLINE.set(None);
@@ -440,9 +458,19 @@ impl Session {
             Some(split) => split.parse()?,
         };
         let mut executor = Executor::new(1)?.interrupted_by(is_late);
-        let cases =
-            self.task
-                .cases(&asked.protocol, asked.n, asked.seed, purpose, &mut executor)?;
+        let drawn = self
+            .task
+            .cases(&asked.protocol, asked.n, asked.seed, purpose, &mut executor);
+        let cases = drawn.map_err(|error| match error {
+            EnvError::Interrupted => Fault::new(
+                Kind::LimitError,
+                format!(
+                    "n = {}: drawing the cases took longer than this server allows; ask for fewer",
+                    asked.n
+                ),
+            ),
+            other => other.into(),
+        })?;
         Ok(cases
             .iter()
             .map(|case| case.as_ref().map(case_map))
@@ -557,4 +585,33 @@ fn check_length(what: &str, got: usize, expected: usize) -> Result<(), Fault> {
     Err(config(format!(
         "{what} has {got} values, expected {expected}"
     )))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::thread::sleep;
+    use std::time::{Duration, Instant};
+
+    use crate::session::is_late;
+
+    /// There is one thread: without lending it, the second task would wait for the first.
+    #[tokio::test(flavor = "multi_thread", worker_threads = 1)]
+    async fn long_work_lends_its_thread_to_others() {
+        let heard = Arc::new(AtomicBool::new(false));
+        let (hears, says) = (Arc::clone(&heard), heard);
+        let long = tokio::spawn(async move {
+            let other = tokio::spawn(async move { says.store(true, Ordering::Relaxed) });
+            let began = Instant::now();
+            while !hears.load(Ordering::Relaxed) && began.elapsed() < Duration::from_secs(60) {
+                is_late();
+                sleep(Duration::from_millis(1));
+            }
+            (hears.load(Ordering::Relaxed), other)
+        });
+        let (is_heard, other) = long.await.unwrap();
+        other.await.unwrap();
+        assert!(is_heard);
+    }
 }

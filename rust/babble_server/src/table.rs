@@ -36,8 +36,8 @@ pub struct Playing {
     pub last: u64,
     /// Reply to it.
     pub reply: axum::body::Bytes,
-    /// Whether the step before was so short that the next one is done without a thread of its own.
-    pub is_quick: bool,
+    /// How many steps in a row were so short that they need no thread of their own.
+    pub quick_steps: u32,
     /// Given back when the session ends.
     pub admission: Admission,
 }
@@ -65,7 +65,7 @@ impl SessionTable {
                 session: Some(session),
                 last: 0,
                 reply: axum::body::Bytes::new(),
-                is_quick: false,
+                quick_steps: 0,
                 admission,
             })),
         });

@@ -109,17 +109,18 @@ async fn sessions_share_the_threads_and_their_results_do_not_depend_on_them() {
 
 #[tokio::test]
 async fn observations_pictures_and_computing_time_are_bounded() {
-    let options = ["--picture-pixels", "100", "--request-seconds", "0.1"];
+    let options = ["--picture-pixels", "100", "--request-seconds", "0.01"];
     let running = Running::start(&options).await;
     let mut large = reach();
     large["options"] = json!({"obs": "retina", "retina_size": 84});
     large["num_envs"] = json!(1_000);
     let over = refused(&running, large).await;
     assert!(over.message.contains("at most 16777216"), "{over:?}");
-    let (mut client, _) = running
-        .play(json!({"env": "BabbleGrasp-v0", "num_envs": 3_000}))
-        .await;
-    let late = fault(&client.ask("reset", json!({})).await);
+    let (mut client, _) = running.play(reach()).await;
+    client.ask("reset", json!({})).await;
+    let hash = client.hash().await;
+    let cases = json!({"protocol": "table1", "n": 4_096});
+    let late = fault(&client.ask("scenarios", cases).await);
     assert_eq!(late.kind, "LimitError");
     assert!(late.message.contains("took longer"), "{late:?}");
     let picture = json!({"env": 0, "camera": "eye", "width": 10, "height": 11});
@@ -128,24 +129,9 @@ async fn observations_pictures_and_computing_time_are_bounded() {
         over.message,
         "width × height = 110: this server allows at most 100"
     );
-    // One after the other is short enough, so the session is usable.
-    let mask = rmp_serde::to_vec_named(&(3, "reset", Mask::first(3_000))).unwrap();
-    read::<Anything>(&client.exchange(mask).await).1.unwrap();
+    assert_eq!(client.hash().await, hash);
+    read::<Anything>(&client.step(1, 0.5).await).1.unwrap();
     running.ended().await;
-}
-
-#[derive(serde::Serialize)]
-struct Mask {
-    #[serde(with = "serde_bytes")]
-    mask: Vec<u8>,
-}
-
-impl Mask {
-    fn first(n: usize) -> Self {
-        Self {
-            mask: (0..n).map(|i| u8::from(i == 0)).collect(),
-        }
-    }
 }
 
 #[tokio::test]

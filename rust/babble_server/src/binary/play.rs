@@ -24,6 +24,10 @@ use crate::session::Session;
 use crate::table::{Playing, SessionEntry};
 use crate::wire::{Made, Make, Nothing};
 
+/// Quick steps after which the next one is expected to be quick, too. Every second step of a batch may
+/// only begin new episodes.
+const QUICK_IN_A_ROW: u32 = 8;
+
 /// Operation of a message that has none, in counters.
 const UNKNOWN: &str = "unknown";
 
@@ -300,7 +304,7 @@ async fn run(
 ) -> Result<Hold, End> {
     let mut hold = hold;
     let here = match &request {
-        Ok(Request::Step(_)) => hold.playing.is_quick,
+        Ok(Request::Step(_)) => hold.playing.quick_steps >= QUICK_IN_A_ROW,
         Ok(Request::Close(_)) | Err(_) => true,
         Ok(_) => false,
     };
@@ -362,7 +366,12 @@ fn run_now(
         metrics.steps(admitted.envs);
     }
     if is_step {
-        playing.is_quick = work.elapsed() < QUICK;
+        let is_quick = work.elapsed() < QUICK;
+        playing.quick_steps = if is_quick {
+            playing.quick_steps.saturating_add(1)
+        } else {
+            0
+        };
     }
     playing.last = id;
     playing.reply = reply;

@@ -15,9 +15,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
 Results = dict[str, Any]
-PAGES = ("docs/benchmarks.md", "README.md")
+PAGES = ("docs/benchmarks.md", "docs/scaling.md", "README.md")
 BLOCK = re.compile(r"(<!-- bench: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 NOT_MEASURED = "–"
+CONTROL_HZ = 20
+"""Steps of an environment in a second of simulated time."""
 
 
 @dataclass(frozen=True)
@@ -279,6 +281,19 @@ def sessions(results: Results) -> str:
     )
 
 
+def scaling(results: Results) -> str:
+    """Sessions that a core carries."""
+    row = results["rows"].get("wire-sessions")
+    if row is None:
+        return f"{NOT_MEASURED}\n"
+    carried = float(f"{1e6 / (row['server_us'] * CONTROL_HZ):.2g}")
+    return (
+        "With 64 sessions at once, each with one environment that reaches, a step costs the server "
+        f"{row['server_us']:.0f} µs of a core. By that a core carries some {carried:,.0f} such "
+        f"sessions that play in real time, {CONTROL_HZ} steps a second.\n"
+    )
+
+
 def speed(results: Results) -> str:
     """The README's few rows."""
     reaching = ("reach-64-1t", "envpool-reacher", "reach", "reacher", "fetchreach")
@@ -292,7 +307,7 @@ def speed(results: Results) -> str:
 
 BLOCKS: dict[str, Callable[[Results], str]] = {
     block.__name__: block
-    for block in (marks, machine, peers, batches, physics, others, wire, sessions, speed)
+    for block in (marks, machine, peers, batches, physics, others, wire, sessions, scaling, speed)
 }
 """The blocks between `<!-- bench: NAME -->` and `<!-- end -->` in the pages."""
 

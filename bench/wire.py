@@ -54,7 +54,7 @@ def serving(command: list[str], **options: Any) -> Iterator[tuple[subprocess.Pop
         yield server, line
     finally:
         server.kill()
-        server.wait()
+        server.communicate()
 
 
 def trips(

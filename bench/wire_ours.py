@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bench.ours import ACTIONS, HELD_STEPS, HOLDING, copies, held, playing
-from bench.wire import program, serving, trips
+from bench.wire import cpu_of, program, serving, trips
 from gym_babble.remote import RemoteEnv, RemoteVectorEnv
 
 if TYPE_CHECKING:
@@ -35,7 +35,9 @@ def single(seconds: float, *, env_id: str) -> Row:
             if terminated or truncated:
                 env.reset()
 
-        return trips(ask, server.pid, seconds)
+        row = trips(ask, server.pid, seconds)
+        env.close()
+        return row
 
 
 def batch(seconds: float, *, n: int) -> Row:
@@ -48,7 +50,9 @@ def batch(seconds: float, *, n: int) -> Row:
         envs.set_state(copies(states, n))
         drawn = np.random.default_rng(0).uniform(-1.0, 1.0, (ACTIONS, n, 2))
         actions = cycle(drawn.astype(np.float32))
-        return trips(lambda: envs.step(next(actions)), server.pid, seconds, units=n)
+        row = trips(lambda: envs.step(next(actions)), server.pid, seconds, units=n)
+        envs.close()
+        return row
 
 
 def held_batch(seconds: float, *, n: int, threads: int) -> Row:
@@ -65,7 +69,7 @@ def held_batch(seconds: float, *, n: int, threads: int) -> Row:
             envs.set_state(copies(states, n))
             actions = iter(moves)
 
-        return trips(
+        row = trips(
             lambda: envs.step(next(actions)),
             server.pid,
             seconds,
@@ -73,11 +77,16 @@ def held_batch(seconds: float, *, n: int, threads: int) -> Row:
             restart=restart,
             calls=HELD_STEPS,
         )
+        envs.close()
+        return row
 
 
 def sessions(seconds: float, *, n: int) -> Row:
-    """Sessions at once, each with a client in a thread: how far their rates lie apart."""
-    with serving(program()) as (_, line):
+    """Sessions at once, each with a client in a thread: how far their rates lie apart.
+
+    And the server's processor time of a step [µs].
+    """
+    with serving(program()) as (server, line):
         envs = [RemoteEnv("BabbleReach-v0", url=url_of(line)) for _ in range(n)]
         counts = [0] * n
         begin, end = threading.Barrier(n + 1), threading.Event()
@@ -96,13 +105,18 @@ def sessions(seconds: float, *, n: int) -> Row:
         for player in players:
             player.start()
         begin.wait()
+        before = cpu_of(server.pid)
         time.sleep(seconds)
         end.set()
         for player in players:
             player.join()
+        cpu = cpu_of(server.pid) - before
+        for env in envs:
+            env.close()
         mean = sum(counts) / n
         return {
             "clock_us": 1e6 * seconds / sum(counts),
+            "server_us": 1e6 * cpu / sum(counts),
             "slowest": min(counts) / mean,
             "fastest": max(counts) / mean,
         }

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import re
+import sys
 import time
 from dataclasses import replace
 from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
+from serving import PROGRAM
 
 import gym_babble
-from bench import chart, clock, ours, peers, process, report, run
+from bench import chart, clock, ours, peers, process, report, run, wire, wire_ours
 from bench.cases import CASES, OURS
 from gym_babble.envs import BabbleGraspVectorEnv
 
@@ -36,6 +39,7 @@ SOME = {
     "memory-reach-1024": {"n": 64},
     "memory-held-1024": {"n": 64},
 }
+FEW = {"wire-held-64": {"n": 4}}
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -57,13 +61,50 @@ def test_a_row_measures(name, monkeypatch):
         pytest.skip("memory is read from /proc")
     monkeypatch.setattr(clock, "WARM_UP_S", 0.0)
     case = CASES[name]
-    module, _, function = case.function.partition(":")
-    measure = getattr({"ours": ours, "peers": peers}[module], function)
-    row = measure(SHORT_S, **{**case.arguments, **SOME[name]})
+    row = measure_of(case)(SHORT_S, **{**case.arguments, **SOME[name]})
     assert set(row) == ({"kib"} if name.startswith("memory") else {"cpu_us", "clock_us"})
     assert all(math.isfinite(value) for value in row.values())
     # Memory freed by another test may be taken again, so its growth can be nothing here.
     assert name.startswith("memory") or min(row.values()) > 0
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="needs Linux")
+@pytest.mark.parametrize("name", ["wire-echo", "wire-reach", "wire-reach-64", "wire-held-64"])
+def test_a_row_of_round_trips_measures(name, monkeypatch):
+    for module in (wire, wire_ours):
+        monkeypatch.setattr(
+            module, "program", lambda: [sys.executable, "-c", PROGRAM, "--port", "0"], raising=False
+        )
+    own = os.sched_getaffinity(0)
+    try:
+        row = measure_of(CASES[name])(SHORT_S, **{**CASES[name].arguments, **FEW.get(name, {})})
+    finally:
+        os.sched_setaffinity(0, own)
+    assert set(row) == {"cpu_us", "clock_us", "p50_us", "p99_us"}
+    assert 0 < row["p50_us"] <= row["p99_us"]
+    assert row["clock_us"] > 0
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="needs Linux")
+def test_sessions_at_once_are_told_apart(monkeypatch):
+    monkeypatch.setattr(
+        wire_ours, "program", lambda: [sys.executable, "-c", PROGRAM, "--port", "0"]
+    )
+    own = os.sched_getaffinity(0)
+    try:
+        row = wire_ours.sessions(SHORT_S, n=3)
+    finally:
+        os.sched_setaffinity(0, own)
+    assert 0 < row["slowest"] <= 1 <= row["fastest"] < 3
+    assert row["server_us"] >= 0
+
+
+def measure_of(case):
+    """The function that measures a row."""
+    module, _, function = case.function.partition(":")
+    return getattr(
+        {"ours": ours, "peers": peers, "wire": wire, "wire_ours": wire_ours}[module], function
+    )
 
 
 def test_a_row_runs_in_a_process_of_its_own():

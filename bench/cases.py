@@ -138,7 +138,7 @@ def core() -> Iterator[Case]:
         ("fovea-over", "foveal shape, hand over", "the fovea's edges, hand over the object"),
         ("eye-core", "eye rgb 630", "the eye's image, 630 × 630"),
     ):
-        yield Case(name, f"in Rust: {label}", RUST, "babble_body:eye", {"row": row})
+        yield Case(name, f"in Rust: {label}", RUST, "babble_eye:eye", {"row": row})
 
 
 def physics() -> Iterator[Case]:
@@ -186,6 +186,8 @@ def wire() -> Iterator[Case]:
     label = "`RemoteVectorEnv`, `BabbleGrasp-v0`, object held, 64 on 1 thread"
     arguments = {"n": 64, "threads": 1}
     yield Case("wire-held-64", label, SERVED, "wire_ours:held_batch", arguments)
+    label = "the same batch, local"
+    yield Case("wire-local-held-64", label, OURS, "ours:held_batch", arguments)
     yield Case("wire-sessions", "64 `RemoteEnv` at once", SERVED, "wire_ours:sessions", {"n": 64})
 
 

@@ -98,7 +98,7 @@ MARKS = (
         0.9,
         "×",
         "clock_us",
-        peer="held-64-1t",
+        peer="wire-local-held-64",
     ),
     Mark(
         "memory of a reaching environment",

@@ -59,7 +59,7 @@ test-rust:
 test-python: setup
 	$(BIN)/python -m pytest
 
-slow: setup ## Run the slow tests (two minutes)
+slow: setup ## Run the slow tests (six minutes)
 	$(BIN)/python -m pytest -m slow
 
 soak: setup ## Play both tasks at random, ten million steps each, in Rust and Python (45 minutes)

@@ -24,6 +24,8 @@ MAY_KNOW = {
     "babble_env": {"babble_brain", "babble_eye", "babble_body"},
     "babble_agent": {"babble_brain", "babble_env"},
     "babble_golden": {"babble_body", "babble_env"},
+    "babble_lab": {"babble_agent", "babble_brain", "babble_env"},
+    "babble_wasm": {"babble_lab"},
     "babble_server": {"babble_env"},
     "babble_py": {
         *("babble_brain", "babble_eye", "babble_body", "babble_env", "babble_agent"),

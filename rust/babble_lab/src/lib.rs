@@ -1,0 +1,2 @@
+#![doc = include_str!("../README.md")]
+#![warn(clippy::disallowed_methods, clippy::disallowed_types)]

@@ -1,0 +1,1 @@
+//! The lab's engine for a browser: only conversions.

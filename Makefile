@@ -21,7 +21,7 @@ PEERS := .venv-bench
 export PYO3_PYTHON := $(CURDIR)/$(BIN)/python
 
 RUST_VERSION := $(shell sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
-NOT_IN_EXTENSION := babble_golden babble_lab babble_wasm tests benches examples proptest-regressions snapshots
+NOT_IN_EXTENSION := babble_golden babble_wasm tests benches examples proptest-regressions snapshots
 EXTENSION_SOURCES := Cargo.toml Cargo.lock $(shell find rust -type f -not -name '*.md' \
 	$(foreach folder,$(NOT_IN_EXTENSION),-not -path '*/$(folder)/*'))
 

@@ -1,2 +1,3 @@
 #![doc = include_str!("../README.md")]
 #![warn(clippy::disallowed_methods, clippy::disallowed_types)]
+pub mod expression;

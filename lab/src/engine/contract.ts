@@ -162,7 +162,10 @@ export interface Registry {
   environments: { id: string; task: string; title: string }[];
   variants: Record<string, string[]>; // of Hebb agents, by task
   profiles: string[];
-  caseParts: Record<string, { name: string; doc: string; unit: string | null; low: number[] | null; high: number[] | null }[]>;
+  caseParts: Record<
+    string,
+    { name: string; doc: string; unit: string | null; low: number[] | null; high: number[] | null }[]
+  >;
   /** The sliders: numbers of config, brain and rule, with symbol, bounds and unit, by task. */
   sliders: Record<string, Slider[]>;
 }

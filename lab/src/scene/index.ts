@@ -1,0 +1,1 @@
+export { createScene, type SceneOptions, type SceneView } from "./view";

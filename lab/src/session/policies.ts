@@ -13,7 +13,8 @@ export async function addShippedPolicies(engine: Engine, setup: Setup): Promise<
   for (const agent of setup.agents) {
     if (agent.kind !== "policy" || !SHIPPED.includes(agent.name) || known.has(agent.name)) continue;
     const response = await fetch(`policies/${agent.name}.safetensors`);
-    if (!response.ok) throw new Error(`the policy “${agent.name}” cannot be loaded: status ${response.status}`);
+    if (!response.ok)
+      throw new Error(`the policy “${agent.name}” cannot be loaded: status ${response.status}`);
     await engine.addPolicy(agent.name, new Uint8Array(await response.arrayBuffer()));
     known.add(agent.name);
   }

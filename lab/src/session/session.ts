@@ -1,7 +1,8 @@
 /** The lab of one tab: the engine's state as signals, and what a user can do to it. */
 import { batch, computed, type Signal, signal } from "@preact/signals";
 import type { Case, Command, Engine, Fault, Lesson, Registry, Setup, State } from "../engine/contract";
-import { type Link, type LinkDefaults, readLink, same, writeLink } from "../link";
+import { type Link, type LinkDefaults, readLink, writeLink } from "../link";
+import { same } from "../link-values";
 import { type Control, isControl, isView, type View } from "../page-state";
 import { addShippedPolicies } from "./policies";
 import { type Shown, shownOf } from "./shown";
@@ -75,6 +76,15 @@ export class Session {
   async change(setup: Setup): Promise<State> {
     if (same(setup, this.state.value.setup)) return this.state.value;
     return this.apply({ do: "change", setup });
+  }
+
+  /** Another environment: with the same agents if they know its task, else with its default agent. */
+  changeEnvironment(env: string): Promise<State> {
+    const { setup } = this.state.value;
+    this.stop();
+    const fallback = this.defaults.setups.find((one) => one.env === env)!;
+    const sameTask = this.taskOf(env) === this.task.value;
+    return this.change(sameTask ? { ...setup, env, options: {} } : { ...fallback, seed: setup.seed });
   }
 
   recall(place: Case | null): Promise<State> {
@@ -206,5 +216,7 @@ async function opened(engine: Engine, setup: Setup): Promise<State> {
 
 function faultOf(error: unknown): Fault {
   const fault = (error as { fault?: Fault } | null)?.fault;
-  return fault ?? { kind: "Error", field: null, problem: error instanceof Error ? error.message : String(error) };
+  return (
+    fault ?? { kind: "Error", field: null, problem: error instanceof Error ? error.message : String(error) }
+  );
 }

@@ -1,0 +1,128 @@
+/** The page: header, lesson, views, controls, and a line that says what happens. */
+import { AgentControls } from "../controls/agents";
+import { BabbleControls } from "../controls/babble";
+import { BeginControls } from "../controls/begin";
+import { FileControls } from "../controls/files";
+import { RecallControls } from "../controls/recall";
+import { RuleControls } from "../controls/rule";
+import { SliderControls } from "../controls/sliders";
+import type { Session } from "../session/session";
+import { agentTitle } from "../views/agent-title";
+import { BrainView } from "../views/brain-view";
+import { EyeView } from "../views/eye-view";
+import { SceneView } from "../views/scene-view";
+import { Header } from "./header";
+import { Status } from "./status";
+
+export function App({ session }: { session: Session }) {
+  return (
+    <>
+      <button type="button" class="skip" onClick={() => document.getElementById("controls")!.focus()}>
+        To the controls
+      </button>
+      <Header session={session} />
+      <Faults session={session} />
+      <main>
+        <div class="views-column">
+          {session.sees("scene") && (
+            <section aria-labelledby="scene-title" class="view">
+              <h2 id="scene-title">Scene</h2>
+              <SceneView session={session} />
+            </section>
+          )}
+          {session.sees("eye") && (
+            <section aria-labelledby="eye-title" class="view">
+              <h2 id="eye-title">Eye</h2>
+              <ShownAgent session={session} name="eye" />
+              <EyeView session={session} />
+            </section>
+          )}
+          {session.sees("brain") && (
+            <section aria-labelledby="brain-title" class="view">
+              <h2 id="brain-title">Brain</h2>
+              <ShownAgent session={session} name="brain" />
+              <BrainView session={session} />
+            </section>
+          )}
+        </div>
+        <section id="controls" class="controls" aria-labelledby="controls-title" tabIndex={-1}>
+          <h2 id="controls-title">Controls</h2>
+          <BabbleControls session={session} />
+          <RecallControls session={session} />
+          <AgentControls session={session} />
+          <RuleControls session={session} />
+          <SliderControls session={session} />
+          <BeginControls session={session} />
+          <FileControls session={session} />
+        </section>
+      </main>
+      <Status session={session} />
+    </>
+  );
+}
+
+function ShownAgent({ session, name }: { session: Session; name: string }) {
+  const { setup } = session.state.value;
+  if (setup.agents.length === 1) return null;
+  return (
+    <fieldset class="row">
+      <legend>of</legend>
+      {setup.agents.map((_, place) => (
+        <label key={place}>
+          <input
+            type="radio"
+            name={`agent-${name}`}
+            checked={session.shownAgent.value === place}
+            onChange={() => {
+              session.shownAgent.value = place;
+              void session.attempt(() => session.show());
+            }}
+          />{" "}
+          {agentTitle(setup, place)}
+        </label>
+      ))}
+    </fieldset>
+  );
+}
+
+function Faults({ session }: { session: Session }) {
+  const fault = session.fault.value;
+  const inLink = session.linkFaults.value;
+  return (
+    <div role="alert" class="faults">
+      {inLink.length > 0 && (
+        <div class="fault">
+          <p>The link could not be followed in all: what is wrong in it is left out.</p>
+          <ul>
+            {inLink.map((problem) => (
+              <li key={problem}>{problem}</li>
+            ))}
+          </ul>
+          <Close
+            close={() => {
+              session.linkFaults.value = [];
+            }}
+          />
+        </div>
+      )}
+      {fault && (
+        <div class="fault">
+          <p>{fault.problem}</p>
+          <Close
+            close={() => {
+              session.fault.value = null;
+            }}
+          />
+        </div>
+      )}
+    </div>
+  );
+}
+
+function Close({ close }: { close: () => void }) {
+  return (
+    <button type="button" class="small" onClick={close}>
+      Close
+    </button>
+  );
+}

@@ -1,4 +1,5 @@
 /** The page: header, lesson, views, controls, and a line that says what happens. */
+import type { ComponentChildren } from "preact";
 import { AgentControls } from "../controls/agents";
 import { BabbleControls } from "../controls/babble";
 import { BeginControls } from "../controls/begin";
@@ -22,29 +23,12 @@ export function App({ session }: { session: Session }) {
       </button>
       <Header session={session} />
       <Faults session={session} />
-      <main>
-        <div class="views-column">
-          {session.sees("scene") && (
-            <section aria-labelledby="scene-title" class="view">
-              <h2 id="scene-title">Scene</h2>
-              <SceneView session={session} />
-            </section>
-          )}
-          {session.sees("eye") && (
-            <section aria-labelledby="eye-title" class="view">
-              <h2 id="eye-title">Eye</h2>
-              <ShownAgent session={session} name="eye" />
-              <EyeView session={session} />
-            </section>
-          )}
-          {session.sees("brain") && (
-            <section aria-labelledby="brain-title" class="view">
-              <h2 id="brain-title">Brain</h2>
-              <ShownAgent session={session} name="brain" />
-              <BrainView session={session} />
-            </section>
-          )}
-        </div>
+      <main class={session.lesson.value ? "with-lesson" : ""}>
+        {session.sees("scene") && (
+          <View name="scene" title="Scene">
+            <SceneView session={session} />
+          </View>
+        )}
         <section id="controls" class="controls" aria-labelledby="controls-title" tabIndex={-1}>
           <h2 id="controls-title">Controls</h2>
           <BabbleControls session={session} />
@@ -55,9 +39,30 @@ export function App({ session }: { session: Session }) {
           <BeginControls session={session} />
           <FileControls session={session} />
         </section>
+        {session.sees("eye") && (
+          <View name="eye" title="Eye">
+            <ShownAgent session={session} name="eye" />
+            <EyeView session={session} />
+          </View>
+        )}
+        {session.sees("brain") && (
+          <View name="brain" title="Brain">
+            <ShownAgent session={session} name="brain" />
+            <BrainView session={session} />
+          </View>
+        )}
       </main>
       <Status session={session} />
     </>
+  );
+}
+
+function View({ name, title, children }: { name: string; title: string; children: ComponentChildren }) {
+  return (
+    <section aria-labelledby={`${name}-title`} class={`view ${name}-view`}>
+      <h2 id={`${name}-title`}>{title}</h2>
+      {children}
+    </section>
   );
 }
 
@@ -66,7 +71,7 @@ function ShownAgent({ session, name }: { session: Session; name: string }) {
   if (setup.agents.length === 1) return null;
   return (
     <fieldset class="row">
-      <legend>of</legend>
+      <legend>Agent</legend>
       {setup.agents.map((_, place) => (
         <label key={place}>
           <input

@@ -243,9 +243,10 @@ fn check(eta: f32, w_max: f32, xi: f32) -> Result<(), BrainError> {
     check_range(valid, "xi", xi.into(), "0 <= xi < 1")
 }
 
-/// Deviation of an activity from its average.
+/// Deviation of an activity from its average; below 1e-10 it counts as zero.
 #[inline]
-fn deviation(x: f32, mean: f32) -> f32 {
+#[must_use]
+pub fn deviation(x: f32, mean: f32) -> f32 {
     let deviation = x - mean;
     if deviation.abs() < SILENT {
         0.0
@@ -254,9 +255,10 @@ fn deviation(x: f32, mean: f32) -> f32 {
     }
 }
 
-/// `w_max - |w|`: how far a weight is from its bound.
+/// `w_max - |w|`: how far a weight is from its bound; 0 beyond it.
 #[inline]
-fn room(w: f32, w_max: f32) -> f32 {
+#[must_use]
+pub fn room(w: f32, w_max: f32) -> f32 {
     // Rounding may carry |w| one ulp past w_max; from there it must not run away.
     let room = w_max - w.abs();
     if room > 0.0 { room } else { 0.0 }

@@ -35,6 +35,7 @@ pub use episode::Episode;
 pub use erased::{AnyBatch, AnyTask, downcast};
 pub use error::EnvError;
 pub use executor::{Executor, Stop};
+pub use near::nearest;
 pub use option_spec::Options;
 pub use options::{Control, Reward};
 pub use outcome::Outcome;

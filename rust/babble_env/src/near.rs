@@ -12,24 +12,25 @@ pub(crate) fn unknown(
     known: impl IntoIterator<Item = &'static str>,
 ) -> EnvError {
     let known: Vec<&str> = known.into_iter().collect();
-    let nearest = known
-        .iter()
-        .map(|candidate| {
-            (
-                edits(&name.to_lowercase(), &candidate.to_lowercase()),
-                *candidate,
-            )
-        })
-        .filter(|&(edits, _)| edits <= MOST_EDITS)
-        .min_by_key(|&(edits, _)| edits);
+    let nearest = nearest(name, known.iter().copied());
     EnvError::UnknownName {
         kind,
         name: name.to_owned(),
-        hint: nearest.map_or_else(String::new, |(_, near)| {
-            format!(" (did you mean {near:?}?)")
-        }),
+        hint: nearest.map_or_else(String::new, |near| format!(" (did you mean {near:?}?)")),
         known: known.join(", "),
     }
+}
+
+/// The known name that was probably meant by `name`, whatever its case; None if all are more than two edits
+/// away.
+pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let name = name.to_lowercase();
+    known
+        .into_iter()
+        .map(|candidate| (edits(&name, &candidate.to_lowercase()), candidate))
+        .filter(|&(edits, _)| edits <= MOST_EDITS)
+        .min_by_key(|&(edits, _)| edits)
+        .map(|(_, candidate)| candidate)
 }
 
 /// Insertions, deletions and substitutions that turn `a` into `b` (Levenshtein's distance).

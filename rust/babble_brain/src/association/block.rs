@@ -121,7 +121,7 @@ impl<'a, R: LearningRule> Block<'a, R> {
 }
 
 /// A running average after an activity `x`: ξ of the old value, 1 - ξ of the new.
-fn moved(mean: f32, x: f32, xi: f32) -> f32 {
+pub(super) fn moved(mean: f32, x: f32, xi: f32) -> f32 {
     let moved = xi * mean + (1.0 - xi) * x;
     if moved < FADED { 0.0 } else { moved }
 }

@@ -3,7 +3,7 @@
 mod block;
 mod outstar;
 
-use block::{BLOCK, Block, LANES};
+use block::{BLOCK, Block, LANES, moved};
 
 use crate::error::{BrainError, check_activity, check_finite, check_length, check_range};
 use crate::rules::LearningRule;
@@ -93,6 +93,23 @@ impl Association {
         for (g, a) in g.chunks(BLOCK * n_in).zip(a.chunks(BLOCK * n_out)) {
             let block = Block::new(rule, g, a, &mut self.g_mean, &mut self.a_mean);
             block.learn(&mut self.w, n_in);
+        }
+        Ok(())
+    }
+
+    /// Moves the running averages on by one movement with activities `g` (`n_in`) and `a` (`n_out`), as
+    /// [`learn`](Self::learn) does after the weights have changed; `xi` is the share of the old value.
+    ///
+    /// # Errors
+    /// [`BrainError::Length`] or [`BrainError::Activity`] names the slice; nothing is moved then.
+    pub fn move_means(&mut self, g: &[f32], a: &[f32], xi: f32) -> Result<(), BrainError> {
+        check_length("g", self.n_in(), g.len())?;
+        check_length("a", self.n_out(), a.len())?;
+        check_activity("g", g)?;
+        check_activity("a", a)?;
+        let inputs = self.g_mean.iter_mut().zip(g);
+        for (mean, &x) in inputs.chain(self.a_mean.iter_mut().zip(a)) {
+            *mean = moved(*mean, x, xi);
         }
         Ok(())
     }

@@ -14,7 +14,7 @@ export interface Picture {
 }
 
 export function paint(canvas: HTMLCanvasElement, picture: Picture, layout: Layout, scale: number): void {
-  const context = canvas.getContext("2d")!;
+  const context = canvas.getContext("2d", { willReadFrequently: true })!;
   const { rows, columns } = layout;
   const image = context.createImageData(columns * scale, rows * scale);
   const words = new Uint32Array(image.data.buffer);

@@ -14,7 +14,7 @@ export function Picture(props: {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
     if (pixels?.length !== 4 * PICTURE * PICTURE) return;
-    const context = canvas.current!.getContext("2d")!;
+    const context = canvas.current!.getContext("2d", { willReadFrequently: true })!;
     const image = context.createImageData(PICTURE, PICTURE);
     image.data.set(pixels);
     context.putImageData(image, 0, 0);

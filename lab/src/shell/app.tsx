@@ -1,5 +1,6 @@
 /** The page: header, lesson, views, controls, and a line that says what happens. */
 import type { ComponentChildren } from "preact";
+import { useEffect } from "preact/hooks";
 import { AgentControls } from "../controls/agents";
 import { BabbleControls } from "../controls/babble";
 import { BeginControls } from "../controls/begin";
@@ -16,6 +17,7 @@ import { Header } from "./header";
 import { Status } from "./status";
 
 export function App({ session }: { session: Session }) {
+  useUndoKey(session);
   return (
     <>
       <button type="button" class="skip" onClick={() => document.getElementById("controls")!.focus()}>
@@ -55,6 +57,22 @@ export function App({ session }: { session: Session }) {
       <Status session={session} />
     </>
   );
+}
+
+/** Ctrl+Z undoes the last command, except where it undoes typing. */
+function useUndoKey(session: Session): void {
+  useEffect(() => {
+    const onKey = (event: KeyboardEvent) => {
+      const typing =
+        event.target instanceof HTMLInputElement && !/radio|checkbox|range/.test(event.target.type);
+      const undo = (event.ctrlKey || event.metaKey) && !event.shiftKey && event.key === "z";
+      if (!undo || typing || session.hidden.value.includes("undo")) return;
+      event.preventDefault();
+      if (session.state.value.undoable > 0) void session.attempt(() => session.undo());
+    };
+    addEventListener("keydown", onKey);
+    return () => removeEventListener("keydown", onKey);
+  }, [session]);
 }
 
 function View({ name, title, children }: { name: string; title: string; children: ComponentChildren }) {

@@ -47,7 +47,7 @@ IN_FILES: dict[str, Any] = {
     PolicyNetwork.KEY: PolicyNetwork,
     **{key_of(cls.KIND): cls for cls in (NearestNeighbours, GoalBabbling, RewardHebb)},
 }
-"""Networks that were exported, and agents that learn in Python, by what their files' headers call them."""
+"""Exported networks, and agents that learn in Python, by what their files' headers call them."""
 PATTERN = "BabbleReachPattern-v0"
 # Where an agent from a file acts unless told, by its task.
 ACTS_IN = {"reach": PATTERN, "grasp": "BabbleGrasp-v0"}

@@ -6,7 +6,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from gym_babble import _core
-from gym_babble.agents.acting import EnvArguments, arguments_for
+from gym_babble.agents.acting import EnvArguments, check_same
 from gym_babble.agents.base import Planner, interface_of
 from gym_babble.errors import AgentFileError
 from gym_babble.files import read_agent, write_file
@@ -25,9 +25,10 @@ __all__ = ["PolicyNetwork"]
 
 
 class PolicyNetwork(Planner):
-    """A network that `gym-babble export-policy` wrote, as one of PPO. It decides each step by itself.
+    """A network that `gym-babble export-policy` wrote, as one of PPO.
 
-    The file says where it acts: task, config, and the options that decide what an action does.
+    It decides each step by itself. The file says where it acts: task, config, and the options that
+    decide what an action does.
 
     Args:
         data: The bytes of the file.
@@ -41,19 +42,16 @@ class PolicyNetwork(Planner):
     KEY = "gym_babble.policy"
     """What such a file is called in its header."""
 
-    _core: _core.PolicyNetwork
-
     def __init__(self, data: bytes, env: EnvLike | None = None) -> None:
         try:
-            self._core = _core.PolicyNetwork.load(data)
+            self._network = _core.PolicyNetwork.load(data)
         except ValueError as error:
             raise AgentFileError(str(error)) from error
-        self._about: dict[str, Any] = json.loads(self._core.about())
+        self._about: dict[str, Any] = json.loads(self._network.about())
         own = EnvArguments(**{name: self._about[name] for name in ("task", "config", "options")})
         super().__init__(own.single() if env is None else env)
         if env is not None:
-            given = EnvArguments.of(interface_of(env))
-            arguments_for(own, None, given.config, given.options)
+            check_same(own, EnvArguments.of(interface_of(env)))
 
     @classmethod
     def load(cls, path: str | Path, env: EnvLike | None = None) -> PolicyNetwork:
@@ -76,7 +74,7 @@ class PolicyNetwork(Planner):
 
     def to_bytes(self) -> bytes:
         """The file that `load` reads."""
-        return self._core.save()
+        return self._network.save()
 
     def save(self, path: str | Path) -> None:
         """Writes the file that `load` reads."""
@@ -85,11 +83,11 @@ class PolicyNetwork(Planner):
     def _act(
         self, senses: NDArray[np.float32], starts: list[bool], plans: Plans | None
     ) -> tuple[NDArray[np.float32], Plans]:
-        return self._core.predict(senses, starts, plans)
+        return self._network.predict(senses, starts, plans)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**super().__getstate__(), "_data": self.to_bytes()}
+        return {**super().__getstate__(), "_network": self.to_bytes()}
 
     def __setstate__(self, state: Mapping[str, Any]) -> None:
-        super().__setstate__({name: value for name, value in state.items() if name != "_data"})
-        self._core = _core.PolicyNetwork.load(state["_data"])
+        super().__setstate__(state)
+        self._network = _core.PolicyNetwork.load(state["_network"])

@@ -1,5 +1,4 @@
-"""The robot of a config for other simulators, MJCF with the objects of a case and URDF without; networks of
-models of stable-baselines3, to act without PyTorch."""
+"""What other programs read: the robot as MJCF with the objects of a case, or URDF; networks."""
 
 from gym_babble.export.mjcf import export_mjcf
 from gym_babble.export.policy import export_policy

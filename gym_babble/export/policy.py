@@ -94,7 +94,9 @@ def _layers(model: Any) -> tuple[list[Any], str, str]:
     names = {nn.ReLU: "relu", nn.Tanh: "tanh"}
     if not all(isinstance(part, nn.Linear) for part in linear) or not between <= {*names}:
         shown = ", ".join(type(part).__name__ for part in parts)
-        raise ConfigError(f"its network is {shown}; expected Linear layers with ReLU or Tanh between")
+        raise ConfigError(
+            f"its network is {shown}; expected Linear layers with ReLU or Tanh between"
+        )
     if len(between) > 1:
         raise ConfigError("its network has ReLU and Tanh; expected one of them")
     return linear, names[between.pop()] if between else "relu", output
@@ -126,4 +128,5 @@ def _columns(model: Any, interface: Interface) -> NDArray[np.intp]:
 def _rounded(values: NDArray[np.float32], bits: int) -> NDArray[np.float32]:
     """Values with so many significant bits."""
     mantissa, exponent = np.frexp(values)
-    return np.ldexp(np.round(np.ldexp(mantissa, bits)), exponent - bits).astype(np.float32)
+    rounded: NDArray[np.float32] = np.ldexp(np.round(np.ldexp(mantissa, bits)), exponent - bits)
+    return rounded

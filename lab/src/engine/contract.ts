@@ -68,7 +68,7 @@ export interface AgentState {
   learns: boolean;
   babbled: number; // babbles made
   learnt: number; // those learnt from
-  babbleOutcomes: Record<string, number>; // how babbles ended, by outcome
+  babbleOutcomes: Record<string, number>; // "legal" and "illegal" in reaching, "kept" and "lost" in grasping
   silenced: number; // neurons
   recalls: Record<string, number>; // how episodes on the stage ended, by outcome
 }
@@ -100,7 +100,7 @@ export interface Scene {
 }
 
 export interface Solid {
-  /** What it is: "ground", "upper_arm", "forearm", "palm", "thumb", "finger", "target", "obstacle", "object", "support", "eye". */
+  /** What it is: "ground", "upper_arm", "forearm", "palm", "thumb", "finger", "target", "obstacle", "object", "goal", "eye". */
   part: string;
   colour: number[]; // red, green, blue, 0 to 255
   shape:
@@ -181,8 +181,10 @@ export interface Slider {
   high: number;
   step: number;
   logarithmic: boolean;
-  default: number;
-  choices: string[] | null; // for the camera frame and flags: a list in place of a range
+  list: boolean; // whether the value stands in a list of one: diameters_m = [0.04]
+  default: number | string | boolean;
+  choices: (string | boolean)[] | null; // for the camera frame and flags: a list in place of a range
+  variants: string[] | null; // those whose brain has this number; null if it is not one of a brain
 }
 
 /** The engine as the page sees it: one for each tab, in a worker. */

@@ -201,6 +201,9 @@ pub trait AnyLearner: Any + fmt::Debug + Send + Sync {
 
     /// As [`Learner::save`].
     fn save(&self) -> Result<Vec<u8>, AgentError>;
+
+    /// A copy, which learns on by itself.
+    fn copied(&self) -> Box<dyn AnyLearner>;
 }
 
 impl<N: Network> AnyLearner for Learner<N> {
@@ -323,6 +326,10 @@ impl<N: Network> AnyLearner for Learner<N> {
 
     fn save(&self) -> Result<Vec<u8>, AgentError> {
         Self::save(self)
+    }
+
+    fn copied(&self) -> Box<dyn AnyLearner> {
+        Box::new(self.clone())
     }
 }
 

@@ -18,8 +18,10 @@ pub enum BoneKind {
     Forearm,
     /// The palm, carried by the forearm.
     Palm,
-    /// A segment of a finger or the thumb.
-    Digit,
+    /// A segment of the thumb.
+    Thumb,
+    /// A segment of a finger.
+    Finger,
 }
 
 /// A straight link with round ends.
@@ -75,7 +77,13 @@ pub fn bones(body: &Body, posture: &JointAngles) -> (Vec<Bone>, Vector3<f64>) {
         .turned(&y, posture[5])
         .turned(&x, posture[6]);
     let knuckles = push(&mut bones, BoneKind::Palm, wrist, body.hand.palm_m);
-    digit(&mut bones, wrist, &body.hand.thumb_m, &posture[7..11], -1.0);
+    digit(
+        &mut bones,
+        BoneKind::Thumb,
+        wrist,
+        &body.hand.thumb_m,
+        &posture[7..11],
+    );
     let mut fingertip = Vector3::zeros();
     for (finger, (pivot, flexion)) in [(Some(11), 12), (None, 15), (Some(18), 19), (Some(22), 23)]
         .into_iter()
@@ -89,25 +97,27 @@ pub fn bones(body: &Body, posture: &JointAngles) -> (Vec<Bone>, Vector3<f64>) {
             posture[flexion + 1],
             posture[flexion + 2],
         ];
-        fingertip += digit(&mut bones, base, &body.hand.finger_m, &angles, 1.0) / 4.0;
+        let lengths = &body.hand.finger_m;
+        fingertip += digit(&mut bones, BoneKind::Finger, base, lengths, &angles) / 4.0;
     }
     (bones, fingertip)
 }
 
-/// A pivot about the palm's normal, then three flexions; returns the tip.
+/// A pivot about the palm's normal, then three flexions, the thumb's clockwise; returns the tip.
 fn digit(
     bones: &mut Vec<Bone>,
+    kind: BoneKind,
     base: Frame,
     lengths: &[f64; 4],
     angles: &[f64],
-    side: f64,
 ) -> Vector3<f64> {
+    let side = if kind == BoneKind::Thumb { -1.0 } else { 1.0 };
     let mut frame = base.turned(&Vector3::y(), angles[0]);
     for (segment, length) in lengths.iter().enumerate() {
         if segment > 0 {
             frame = frame.turned(&Vector3::z(), side * angles[segment]);
         }
-        frame = push(bones, BoneKind::Digit, frame, *length);
+        frame = push(bones, kind, frame, *length);
     }
     frame.origin
 }

@@ -16,31 +16,35 @@ const PUPIL: Material = Material::plain([40, 44, 52]);
 const GAZE: Material = Material::plain([120, 190, 120]);
 const TRAIL: Material = Material::plain([46, 160, 120]);
 const GROUND: Material = Material::plain([196, 196, 188]);
+/// Radius of the eye \[m\].
+const BALL_M: f64 = 0.018;
+
+/// A thing to be seen, and the name of what it belongs to: "forearm", "thumb", "obstacle" ...
+pub type Part = (&'static str, Primitive);
 
 /// Arm and hand in full: sleeves, palm and every digit.
-pub fn push_robot(scene: &mut Vec<Primitive>, body: &Body, q: [f64; 2]) {
+#[must_use]
+pub fn robot(body: &Body, q: [f64; 2]) -> Vec<Part> {
     let (bones, _) = skeleton::bones(body, &skeleton::joint_angles(&body.joints, q));
-    let digit = 0.4 * body.hand.finger_spacing_m;
-    for bone in &bones {
-        let width = body.arm.half_width_m;
-        match bone.kind {
-            BoneKind::UpperArm => push_capsule(scene, bone, width, SLEEVE),
-            BoneKind::Forearm => push_capsule(scene, bone, width, FOREARM),
-            BoneKind::Digit => push_capsule(scene, bone, digit.min(width), SKIN),
-            BoneKind::Palm => scene.push(palm(bone, width, body.hand.palm_height_m)),
-        }
-    }
+    let width = body.arm.half_width_m;
+    let digit = width.min(0.4 * body.hand.finger_spacing_m);
+    let part = |bone: &Bone| match bone.kind {
+        BoneKind::UpperArm => ("upper_arm", capsule(bone, width, SLEEVE)),
+        BoneKind::Forearm => ("forearm", capsule(bone, width, FOREARM)),
+        BoneKind::Palm => ("palm", palm(bone, width, body.hand.palm_height_m)),
+        BoneKind::Thumb => ("thumb", capsule(bone, digit, SKIN)),
+        BoneKind::Finger => ("finger", capsule(bone, digit, SKIN)),
+    };
+    bones.iter().map(part).collect()
 }
 
-fn push_capsule(scene: &mut Vec<Primitive>, bone: &Bone, radius: f64, material: Material) {
-    scene.push(Primitive::new(
-        Shape::Capsule {
-            a: bone.a,
-            b: bone.b,
-            radius,
-        },
-        material,
-    ));
+fn capsule(bone: &Bone, radius: f64, material: Material) -> Primitive {
+    let shape = Shape::Capsule {
+        a: bone.a,
+        b: bone.b,
+        radius,
+    };
+    Primitive::new(shape, material)
 }
 
 fn palm(bone: &Bone, half_width: f64, height: f64) -> Primitive {
@@ -93,16 +97,9 @@ pub fn push_surroundings(
     gaze: Gaze,
     eye: &babble_eye::Eye,
 ) {
-    const BALL_M: f64 = 0.018;
     let centre = Vector3::from(body.eye.position_m);
     let forward: Vector3<f64> = eye.camera(gaze).rotation.row(2).transpose();
-    scene.push(Primitive::new(
-        Shape::Sphere {
-            centre,
-            radius: BALL_M,
-        },
-        EYE_WHITE,
-    ));
+    scene.push(eye_ball(body));
     let pupil = centre + forward * (0.62 * BALL_M);
     scene.push(Primitive::new(
         Shape::Sphere {
@@ -119,12 +116,23 @@ pub fn push_surroundings(
         };
         scene.push(Primitive::new(line, GAZE));
     }
-    scene.push(ground(-body.obstacle.height_m / 2.0));
+    scene.push(ground(body));
 }
 
-/// The ground below everything.
+/// The eye, as others see it.
 #[must_use]
-pub fn ground(height: f64) -> Primitive {
+pub fn eye_ball(body: &Body) -> Primitive {
+    let shape = Shape::Sphere {
+        centre: body.eye.position_m.into(),
+        radius: BALL_M,
+    };
+    Primitive::new(shape, EYE_WHITE)
+}
+
+/// The ground on which the obstacle stands.
+#[must_use]
+pub fn ground(body: &Body) -> Primitive {
+    let height = -body.obstacle.height_m / 2.0;
     let shape = Shape::Ground {
         height,
         centre: [0.0, 0.1],

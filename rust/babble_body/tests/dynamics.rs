@@ -170,7 +170,7 @@ fn kinetic_energy_is_that_of_the_pieces() {
                 state.v[0] + state.v[1],
             ),
             BoneKind::Palm => (0.02 * 0.06, 1e-4 / 3.0, state.v[0] + state.v[1]),
-            BoneKind::Digit => (
+            BoneKind::Thumb | BoneKind::Finger => (
                 std::f64::consts::PI * 0.006 * 0.006,
                 0.006 * 0.006 / 4.0,
                 state.v[0] + state.v[1],

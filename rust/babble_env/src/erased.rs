@@ -14,7 +14,7 @@ use crate::case::{CasePart, CaseValues};
 use crate::config::Config;
 use crate::error::EnvError;
 use crate::executor::Executor;
-use crate::picture::View;
+use crate::picture::{View, Visible};
 use crate::snapshot;
 use crate::spec::Spec;
 use crate::stream::Purpose;
@@ -197,6 +197,9 @@ pub trait AnyBatch: Any + fmt::Debug + Send + Sync {
     /// How many moments of environment `i` were recorded since its reset.
     fn moments(&self, i: usize) -> Result<usize, EnvError>;
 
+    /// What there is to see of environment `i`; none where a task has nothing solid.
+    fn visible(&self, i: usize) -> Result<Option<Visible>, EnvError>;
+
     /// A picture (width, height) of environment `i`; `frame` picks a recorded moment, none is now.
     fn picture(
         &self,
@@ -275,6 +278,10 @@ impl<T: Task> AnyBatch for Batch<T> {
 
     fn moments(&self, i: usize) -> Result<usize, EnvError> {
         Ok(self.task().moments(self.state(i)?))
+    }
+
+    fn visible(&self, i: usize) -> Result<Option<Visible>, EnvError> {
+        Ok(self.task().visible(self.state(i)?))
     }
 
     fn picture(

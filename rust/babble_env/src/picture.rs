@@ -1,8 +1,9 @@
 //! What the eye, and a person, sees of an episode of any task.
 
+use babble_body::visual::Part;
 use babble_eye::{
-    Eye, Gaze, Primitive, draw_red_over, foveal_edges, foveal_picture, render_rgb, render_smooth,
-    third_person,
+    Eye, Gaze, Pinhole, Primitive, RedRegion, draw_red_over, foveal_edges, foveal_picture,
+    render_rgb, render_smooth, third_person,
 };
 use image::imageops::{FilterType, resize, thumbnail};
 use image::{DynamicImage, RgbImage};
@@ -29,6 +30,50 @@ const EDGE: std::ops::RangeInclusive<u32> = 16..=4096;
 /// Fewest rays along an edge of the eye's image: with fewer the target falls between them, and a
 /// pixel is the mean of several rays.
 const EYE_RAYS: u32 = 160;
+
+/// What there is to see of an episode, for views that somebody else draws. Lengths are in metres.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Visible {
+    /// What is solid, in world coordinates. During an episode only places change.
+    pub parts: Vec<Part>,
+    /// Pan and tilt.
+    pub gaze: Gaze,
+    /// The eye's image.
+    pub camera: Pinhole,
+    /// Its angle of view \[rad\].
+    pub field: f64,
+    /// Where the line of sight ends: in the arm's plane, or at the length of an arm.
+    pub looks_at: [f64; 3],
+    /// The red pixels of Eq. 1; none where no red is seen.
+    pub red: Option<RedRegion>,
+    /// What is to come to the red object: the fingertip, or the middle of the palm.
+    pub tip: [f64; 3],
+}
+
+impl Visible {
+    pub(crate) fn new(
+        eye: &Eye,
+        gaze: Gaze,
+        red: Option<RedRegion>,
+        tip: [f64; 3],
+        parts: Vec<Part>,
+    ) -> Self {
+        /// Length of a line of sight that does not meet the plane \[m\].
+        const FAR_M: f64 = 0.4;
+        let camera = eye.camera(gaze);
+        let far = camera.position + camera.ray([0.0, 0.0]) * FAR_M;
+        let met = eye.target_in_plane(gaze, 0.0);
+        Self {
+            parts,
+            gaze,
+            field: eye.config().field_deg.to_radians(),
+            looks_at: met.map_or(far.into(), |[x, y]| [x, y, 0.0]),
+            camera,
+            red,
+            tip,
+        }
+    }
+}
 
 /// What there is to see.
 #[derive(Debug)]

@@ -14,7 +14,7 @@ use crate::error::EnvError;
 use crate::executor::{Executor, Stop};
 use crate::near;
 use crate::outcome::Outcome;
-use crate::picture::View;
+use crate::picture::{View, Visible};
 use crate::progress::{Ending, Lifecycle, Progress};
 use crate::spec::Spec;
 use crate::stream::{Purpose, Stream};
@@ -212,6 +212,12 @@ pub trait Task: fmt::Debug + Send + Sync + Sized + 'static {
 
     /// How many moments of an episode were recorded.
     fn moments(&self, state: &Self::State) -> usize;
+
+    /// What there is to see of an episode; none where a task has nothing solid.
+    fn visible(&self, state: &Self::State) -> Option<Visible> {
+        let _ = state;
+        None
+    }
 
     /// A picture of an episode; `frame` picks one of its recorded moments, none is now.
     ///

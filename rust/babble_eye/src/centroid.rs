@@ -34,16 +34,34 @@ impl Pixels {
         self.y += count * (j as f64 + 0.5);
     }
 
-    fn centroid(&self) -> Option<[f64; 2]> {
-        (self.count > 0.0).then(|| [self.x / self.count, self.y / self.count])
+    fn region(&self) -> Option<RedRegion> {
+        (self.count > 0.0).then(|| RedRegion {
+            pixels: self.count as u64,
+            centroid: [self.x / self.count, self.y / self.count],
+        })
     }
 }
 
+/// The visible pixels of the target primitives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RedRegion {
+    /// How many there are.
+    pub pixels: u64,
+    /// Their centroid in pixel coordinates.
+    pub centroid: [f64; 2],
+}
+
 /// Centroid, in pixel coordinates, of the visible pixels of the target
-/// primitives; `None` if there are none. It is that of the whole image, but
-/// only the target's window is looked at.
+/// primitives; `None` if there are none.
 #[must_use]
 pub fn red_centroid(scene: &[Primitive], camera: &Pinhole) -> Option<[f64; 2]> {
+    Some(red_region(scene, camera)?.centroid)
+}
+
+/// The visible pixels of the target primitives; `None` if there are none. They
+/// are those of the whole image, but only the target's window is looked at.
+#[must_use]
+pub fn red_region(scene: &[Primitive], camera: &Pinhole) -> Option<RedRegion> {
     let mut decomposer = Decomposer::new(camera);
     for (index, primitive) in targets(scene) {
         decomposer.add(index, &primitive.shape);
@@ -94,8 +112,8 @@ fn farthest(surfaces: &[VisibleSurface], plane: &ImagePlane) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Centroid of a surface that nothing hides: a ball's rows in closed form.
-fn lone(surface: &VisibleSurface, plane: &ImagePlane) -> Option<[f64; 2]> {
+/// Pixels of a surface that nothing hides: a ball's rows in closed form.
+fn lone(surface: &VisibleSurface, plane: &ImagePlane) -> Option<RedRegion> {
     if !matches!(surface.kind, SurfaceKind::Ball(..)) {
         return drawn(
             std::slice::from_ref(surface),
@@ -106,17 +124,17 @@ fn lone(surface: &VisibleSurface, plane: &ImagePlane) -> Option<[f64; 2]> {
     }
     let mut pixels = Pixels::default();
     surface.rows(&surface.window, plane, |j, columns| pixels.add(columns, j));
-    pixels.centroid()
+    pixels.region()
 }
 
-/// Centroid by drawing the window, in the order of the scene: of two surfaces at the same depth, the
+/// Pixels by drawing the window, in the order of the scene: of two surfaces at the same depth, the
 /// earlier one is seen.
 fn drawn<'a>(
     red: &'a [VisibleSurface],
     others: impl Iterator<Item = &'a VisibleSurface>,
     window: Window,
     plane: &ImagePlane,
-) -> Option<[f64; 2]> {
+) -> Option<RedRegion> {
     let mut surfaces: Vec<_> = red.iter().map(|surface| (0, surface)).collect();
     surfaces.extend(others.map(|surface| (1, surface)));
     surfaces.sort_by_key(|(_, surface)| surface.primitive);
@@ -135,5 +153,5 @@ fn drawn<'a>(
         }
         pixels.add_row([count, sum].map(f64::from), window.columns.0, j);
     }
-    pixels.centroid()
+    pixels.region()
 }

@@ -14,7 +14,7 @@ mod render;
 mod scene;
 
 pub use camera::Pinhole;
-pub use centroid::red_centroid;
+pub use centroid::{RedRegion, red_centroid, red_region};
 pub use config::{EyeConfig, GazeFrame};
 pub use error::EyeError;
 pub use fovea::{

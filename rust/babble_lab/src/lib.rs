@@ -1,3 +1,35 @@
 #![doc = include_str!("../README.md")]
 #![warn(clippy::disallowed_methods, clippy::disallowed_types)]
+
+mod agent;
+mod brain;
+mod command;
+mod cost;
 pub mod expression;
+mod fault;
+mod hash;
+pub mod history;
+mod lab;
+mod making;
+mod python;
+mod record;
+pub mod registry;
+mod scene;
+mod setup;
+mod sliders;
+mod snapshot;
+mod stage;
+mod state;
+mod test_cases;
+
+pub use brain::{AssociationView, Brain, DecidedNumber, MapActivity};
+pub use command::{Answer, Case, Command, MapName};
+pub use fault::Fault;
+pub use history::{Event, Happened};
+pub use lab::Lab;
+pub use record::{Record, replay};
+pub use registry::{Registry, default_setup, registry};
+pub use scene::{GazeLine, Scene, Shape, Sight, Solid};
+pub use setup::{AgentSetup, Setup};
+pub use sliders::Slider;
+pub use state::{AgentState, CurvePoint, EpisodeState, Outcomes, State};

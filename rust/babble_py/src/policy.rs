@@ -235,7 +235,10 @@ impl PolicyNetwork {
 
     /// The network as the bytes of a safetensors file.
     fn save<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        Ok(PyBytes::new(py, &self.network.save().map_err(errors::agent)?))
+        Ok(PyBytes::new(
+            py,
+            &self.network.save().map_err(errors::agent)?,
+        ))
     }
 
     /// Actions (n, k) for flat senses (n, m), and the plans for the next call.

@@ -214,7 +214,7 @@ pub(crate) fn cross_section(body: &Body, kind: BoneKind) -> (f64, f64) {
             return (area, half_width * half_width / 3.0);
         }
         // A digit's radius is bounded by the spacing of the fingers.
-        BoneKind::Digit => half_width.min(0.4 * body.hand.finger_spacing_m),
+        BoneKind::Thumb | BoneKind::Finger => half_width.min(0.4 * body.hand.finger_spacing_m),
         BoneKind::UpperArm | BoneKind::Forearm => half_width,
     };
     let square = radius * radius;

@@ -8,7 +8,7 @@ use super::model::Robot;
 use super::world::World;
 use crate::geometry::frame::Frame;
 use crate::geometry::solid::Solid;
-use crate::visual::{FOREARM, SKIN, SLEEVE};
+use crate::visual::{FOREARM, Part, SKIN, SLEEVE};
 use babble_eye::{Material, Primitive, Shape};
 
 impl Robot {
@@ -18,9 +18,19 @@ impl Robot {
         for (i, (link, placed)) in self.links.iter().zip(&placed).enumerate() {
             let frame = placed.frame();
             for (region, solid) in &link.solids {
-                scene.push(Primitive::new(shape(solid, &frame), material(*region, i)));
+                scene.push(Primitive::new(shape(solid, &frame), look(*region, i).1));
             }
         }
+    }
+
+    /// What [`push_visible`](Self::push_visible) adds, with the name of each part.
+    #[must_use]
+    pub fn visible_parts(&self, world: &World) -> Vec<Part> {
+        let mut scene = Vec::new();
+        self.push_visible(world, &mut scene);
+        let links = self.links.iter().enumerate();
+        let names = links.flat_map(|(i, link)| link.solids.iter().map(move |one| look(one.0, i).0));
+        names.zip(scene).collect()
     }
 
     /// The object, which is the eye's target.
@@ -30,11 +40,13 @@ impl Robot {
     }
 }
 
-fn material(region: ContactRegion, link: usize) -> Material {
+fn look(region: ContactRegion, link: usize) -> (&'static str, Material) {
     match region {
-        ContactRegion::Arm if link == 0 => SLEEVE,
-        ContactRegion::Arm => FOREARM,
-        ContactRegion::Palm | ContactRegion::Thumb | ContactRegion::Fingers => SKIN,
+        ContactRegion::Arm if link == 0 => ("upper_arm", SLEEVE),
+        ContactRegion::Arm => ("forearm", FOREARM),
+        ContactRegion::Palm => ("palm", SKIN),
+        ContactRegion::Thumb => ("thumb", SKIN),
+        ContactRegion::Fingers => ("finger", SKIN),
     }
 }
 

@@ -21,7 +21,7 @@ use crate::error::EnvError;
 use crate::executor::{Executor, Stop};
 use crate::noise::NoiseConfig;
 use crate::outcome::Outcome;
-use crate::picture::View;
+use crate::picture::{View, Visible};
 use crate::progress::{Ending, Lifecycle, Progress};
 use crate::spec::Spec;
 use crate::stream::{Purpose, Stream};
@@ -236,6 +236,10 @@ impl Task for GraspTask {
 
     fn moments(&self, state: &GraspState) -> usize {
         state.trail.len()
+    }
+
+    fn visible(&self, state: &GraspState) -> Option<Visible> {
+        Some(picture::visible(self, state))
     }
 
     fn picture(

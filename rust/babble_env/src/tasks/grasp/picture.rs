@@ -2,6 +2,7 @@
 
 use babble_body::robot::World;
 use babble_body::visual;
+use babble_eye::red_region;
 use image::RgbImage;
 use nalgebra::{Vector2, Vector3};
 
@@ -9,7 +10,7 @@ use super::sight;
 use super::state::{GraspState, Moment};
 use super::task::GraspTask;
 use crate::error::EnvError;
-use crate::picture::{Scene, View, no_such_frame};
+use crate::picture::{Scene, View, Visible, no_such_frame};
 
 /// A picture of an episode; `frame` picks a recorded moment, none is now.
 ///
@@ -54,6 +55,24 @@ pub(super) fn picture(
         gaze,
     };
     scene.picture(view, size)
+}
+
+/// As [`crate::Task::visible`].
+pub(super) fn visible(task: &GraspTask, state: &GraspState) -> Visible {
+    let body = &task.config.body;
+    let scene = sight::scene(task, &state.world, &state.case);
+    let red = red_region(&scene, &task.eye.camera(state.gaze));
+    let ball = task.robot.visible_object(&state.world, state.case.radius());
+    let mut parts = vec![("object", ball)];
+    parts.extend(task.robot.visible_parts(&state.world));
+    if let Some(obstacle) = &state.case.obstacle {
+        parts.push(("obstacle", visual::obstacle(body, obstacle)));
+    }
+    if let Some(goal) = state.case.goal {
+        parts.push(("goal", visual::goal(goal)));
+    }
+    let palm = task.robot.palm(&state.world).origin;
+    Visible::new(&task.eye, state.gaze, red, palm.into(), parts)
 }
 
 fn world_at(task: &GraspTask, moment: &Moment) -> World {

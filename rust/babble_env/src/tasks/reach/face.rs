@@ -21,7 +21,7 @@ use crate::executor::{Executor, Stop};
 use crate::noise::NoiseConfig;
 use crate::options::Control;
 use crate::outcome::Outcome;
-use crate::picture::View;
+use crate::picture::{View, Visible};
 use crate::progress::{Ending, Lifecycle, Progress};
 use crate::spec::Spec;
 use crate::stream::{Purpose, Stream};
@@ -224,6 +224,10 @@ impl Task for ReachTask {
 
     fn moments(&self, state: &ReachState) -> usize {
         state.trail.len()
+    }
+
+    fn visible(&self, state: &ReachState) -> Option<Visible> {
+        Some(picture::visible(self, state))
     }
 
     fn picture(

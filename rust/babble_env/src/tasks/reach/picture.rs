@@ -1,14 +1,14 @@
 //! The scene of a picture of reaching.
 
-use babble_body::visual;
-use babble_eye::Primitive;
+use babble_body::visual::{self, Part};
+use babble_eye::{Primitive, red_region};
 use image::RgbImage;
 use nalgebra::Vector2;
 
 use super::state::ReachState;
 use super::task::ReachTask;
 use crate::error::EnvError;
-use crate::picture::{Scene, View, no_such_frame};
+use crate::picture::{Scene, View, Visible, no_such_frame};
 
 /// As [`crate::Task::picture`].
 pub(super) fn picture(
@@ -42,6 +42,31 @@ fn moment(state: &ReachState, frame: Option<usize>) -> Result<([f64; 2], &[[f64;
     Ok((*q, &state.trail[..=frame]))
 }
 
+/// As [`crate::Task::visible`].
+pub(super) fn visible(task: &ReachTask, state: &ReachState) -> Visible {
+    let target = visual::target(&task.config.body, state.case.target);
+    let [x, y] = task.arm.fingertip(state.arm.q).into();
+    let red = red_region(&[target], &task.eye.camera(state.gaze));
+    Visible::new(
+        &task.eye,
+        state.gaze,
+        red,
+        [x, y, 0.0],
+        parts(task, state, state.arm.q),
+    )
+}
+
+/// The target first, then all else that is solid.
+fn parts(task: &ReachTask, state: &ReachState, q: [f64; 2]) -> Vec<Part> {
+    let body = &task.config.body;
+    let mut parts = vec![("target", visual::target(body, state.case.target))];
+    if let Some(obstacle) = &state.case.obstacle {
+        parts.push(("obstacle", visual::obstacle(body, obstacle)));
+    }
+    parts.extend(visual::robot(body, q));
+    parts
+}
+
 /// The target first, then all else.
 fn things(
     task: &ReachTask,
@@ -51,17 +76,14 @@ fn things(
     view: View,
 ) -> Vec<Primitive> {
     let body = &task.config.body;
-    let mut things = vec![visual::target(body, state.case.target)];
-    if let Some(obstacle) = &state.case.obstacle {
-        things.push(visual::obstacle(body, obstacle));
-    }
-    visual::push_robot(&mut things, body, q);
+    let parts = parts(task, state, q).into_iter();
+    let mut things: Vec<Primitive> = parts.map(|(_, thing)| thing).collect();
     if view == View::ThirdPerson {
         let tips: Vec<Vector2<f64>> = trail.iter().map(|&q| task.arm.fingertip(q)).collect();
         visual::push_trail(&mut things, &tips);
         visual::push_surroundings(&mut things, body, state.gaze, &task.eye);
     } else {
-        things.push(visual::ground(-body.obstacle.height_m / 2.0));
+        things.push(visual::ground(body));
     }
     things
 }

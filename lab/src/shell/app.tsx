@@ -8,6 +8,7 @@ import { FileControls } from "../controls/files";
 import { RecallControls } from "../controls/recall";
 import { RuleControls } from "../controls/rule";
 import { SliderControls } from "../controls/sliders";
+import { LessonPanel } from "../lessons/panel";
 import type { Session } from "../session/session";
 import { agentTitle } from "../views/agent-title";
 import { BrainView } from "../views/brain-view";
@@ -26,6 +27,7 @@ export function App({ session }: { session: Session }) {
       <Header session={session} />
       <Faults session={session} />
       <main class={session.lesson.value ? "with-lesson" : ""}>
+        <LessonPanel session={session} />
         {session.sees("scene") && (
           <View name="scene" title="Scene">
             <SceneView session={session} />

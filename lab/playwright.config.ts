@@ -1,6 +1,6 @@
 import { defineConfig } from "@playwright/test";
 
-const PORT = 8743;
+const PORT = Number(process.env.LAB_PORT ?? 8743);
 export const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium";
 
 // The page is served from a subfolder, as on a course page, by a server that knows no type of .wasm.

@@ -44,6 +44,15 @@ pub fn check_rule(rule: &str) -> Reply<String> {
     json(&fault.map(|fault| serde_json::json!({ "problem": fault.problem, "at": fault.at })))
 }
 
+/// The lessons, as JSON.
+///
+/// # Errors
+/// A fault.
+#[wasm_bindgen]
+pub fn lessons() -> Reply<String> {
+    json(babble_lab::lessons())
+}
+
 /// A session.
 #[wasm_bindgen]
 #[derive(Debug)]
@@ -150,6 +159,12 @@ impl Session {
     /// Lines of Python that make the same agent.
     pub fn python(&self, agent: usize) -> Reply<String> {
         self.0.python(agent).map_err(thrown)
+    }
+
+    /// How far the session has come in a lesson, as JSON.
+    pub fn progress(&self, lesson: &str) -> Reply<String> {
+        let lesson = babble_lab::lesson::lesson(lesson).map_err(thrown)?;
+        json(&lesson.progress(self.0.history()))
     }
 
     /// The session so far as a file to hand in, JSON; `lesson` is undefined outside of one.

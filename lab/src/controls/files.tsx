@@ -1,0 +1,106 @@
+/** Agents as files, Python for the same agent, and the record to hand in. */
+import { useRef, useState } from "preact/hooks";
+import type { Session } from "../session/session";
+import { Act, Group } from "./group";
+
+export function FileControls({ session }: { session: Session }) {
+  const [name, setName] = useState("");
+  const agent = session.shownAgent.value;
+  const learns = session.state.value.agents[agent]?.learns ?? false;
+  return (
+    <Group session={session} controls={["files"]} title="Take it with you" folded>
+      <div class="row">
+        <label>
+          your name{" "}
+          <input
+            type="text"
+            maxLength={100}
+            value={name}
+            onInput={(event) => setName(event.currentTarget.value)}
+          />
+        </label>
+        <Act session={session} work={() => handIn(session, name.trim())}>
+          Download what you did, to hand in
+        </Act>
+      </div>
+      <div class="row">
+        <Act session={session} disabled={!learns} work={() => saveAgent(session, agent)}>
+          Save the agent
+        </Act>
+        <label class="file">
+          Load an agent
+          <input
+            type="file"
+            accept=".safetensors"
+            onChange={(event) => {
+              const file = event.currentTarget.files?.[0];
+              if (file) {
+                void session.attempt(async () =>
+                  session.loadAgent(agent, new Uint8Array(await file.arrayBuffer())),
+                );
+              }
+            }}
+          />
+        </label>
+        <PythonButton session={session} agent={agent} />
+      </div>
+    </Group>
+  );
+}
+
+async function handIn(session: Session, name: string): Promise<void> {
+  const lesson = session.lesson.value;
+  const record = await session.engine.record(lesson?.id ?? null, name);
+  download(new Blob([record], { type: "application/json" }), `${fileName(lesson?.id ?? "lab", name)}.json`);
+  session.said.value = "What you did is downloaded as a file to hand in.";
+}
+
+async function saveAgent(session: Session, agent: number): Promise<void> {
+  const bytes = await session.engine.saveAgent(agent);
+  download(new Blob([new Uint8Array(bytes)]), `${fileName("agent", session.task.value)}.safetensors`);
+}
+
+function fileName(...parts: string[]): string {
+  const words = parts.map((part) => part.replace(/[^\p{L}\p{N}]+/gu, "-")).filter(Boolean);
+  return words.join("-").slice(0, 80);
+}
+
+function download(blob: Blob, name: string): void {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}
+
+function PythonButton({ session, agent }: { session: Session; agent: number }) {
+  const dialog = useRef<HTMLDialogElement>(null);
+  const [code, setCode] = useState("");
+  const [copied, setCopied] = useState(false);
+  const open = async () => {
+    setCode(await session.engine.python(agent));
+    setCopied(false);
+    dialog.current!.showModal();
+  };
+  return (
+    <>
+      <Act session={session} work={open}>
+        Open in Python
+      </Act>
+      <dialog ref={dialog} aria-labelledby="python-title">
+        <h2 id="python-title">The same in Python</h2>
+        {/* biome-ignore lint/a11y/noNoninteractiveTabindex: it scrolls by keyboard */}
+        <pre tabIndex={0}>{code}</pre>
+        <div class="row">
+          <Act session={session} work={() => navigator.clipboard.writeText(code).then(() => setCopied(true))}>
+            Copy
+          </Act>
+          <button type="button" onClick={() => dialog.current!.close()}>
+            Close
+          </button>
+          <span aria-live="polite">{copied && "Copied."}</span>
+        </div>
+      </dialog>
+    </>
+  );
+}

@@ -1,0 +1,100 @@
+/** Babbling in slices, so that the page stays alive and can be stopped. */
+import type { State } from "../engine/contract";
+import type { Session } from "./session";
+import { Slices, type Work } from "./work";
+
+/** Test cases of a point of the learning curve, by task: a grasp takes longer to play. */
+export const TEST_CASES: Record<string, number> = { reach: 100, grasp: 40 };
+/** Tests without a better result, after which babbling "until it is good" ends. */
+export const PATIENCE = 4;
+/** How often the views follow while it babbles. */
+const SHOWN_EVERY_MS = 200;
+
+/** Babbles until each learning agent has learnt from so many more babbles. */
+export async function babble(session: Session, babbles: number): Promise<void> {
+  const work = session.begin("Babbling", babbles);
+  try {
+    const done = await babbleSlices(session, work, babbles, 0);
+    session.said.value = `Learnt from ${done.toLocaleString("en")} ${done === 1 ? "babble" : "babbles"}.`;
+  } finally {
+    work.end();
+    await session.show();
+  }
+}
+
+/** Plays the test cases, which is a point of the learning curve. */
+export async function test(session: Session): Promise<void> {
+  const work = session.begin("Testing", null);
+  try {
+    await testOnce(session);
+    session.said.value = `Tested: ${shares(session.state.value)} of the cases succeeded.`;
+  } finally {
+    work.end();
+    await session.show();
+  }
+}
+
+/** Babbles and tests in turn until an agent's success reaches `goal`, or none was better for a while. */
+export async function babbleUntilGood(session: Session, goal: number): Promise<void> {
+  const work = session.begin(`Babbling until ${percent(goal)} of the test cases succeed`, null);
+  let done = 0;
+  let best = -1;
+  let sinceBest = 0;
+  try {
+    while (!work.stopped) {
+      const success = await testOnce(session);
+      if (success > best) [best, sinceBest] = [success, 0];
+      else sinceBest += 1;
+      if (success >= goal || sinceBest >= PATIENCE || work.stopped) break;
+      done = await babbleSlices(session, work, Math.max(10, Math.round(done / 2)), done);
+    }
+    session.said.value = verdict(work.stopped, best, goal);
+  } finally {
+    work.end();
+    await session.show();
+  }
+}
+
+function verdict(stopped: boolean, best: number, goal: number): string {
+  const result = `the best test so far: ${percent(best)} success`;
+  if (stopped) return `Stopped; ${result}.`;
+  if (best >= goal) return `Good: ${percent(best)} of the test cases succeed.`;
+  return `It gets no better: ${result}.`;
+}
+
+async function babbleSlices(session: Session, work: Work, babbles: number, before: number): Promise<number> {
+  const slices = new Slices();
+  let done = 0;
+  let shown = performance.now();
+  while (done < babbles && !work.stopped) {
+    const n = slices.next(babbles - done);
+    const began = performance.now();
+    await session.applySlice({ do: "babble", n });
+    const now = performance.now();
+    slices.took(n, now - began);
+    done += n;
+    work.report(before + done);
+    if (now - shown >= SHOWN_EVERY_MS) {
+      await session.show();
+      shown = performance.now();
+    }
+  }
+  return before + done;
+}
+
+async function testOnce(session: Session): Promise<number> {
+  const n = TEST_CASES[session.task.value] ?? 40;
+  const { curve, agents } = await session.applySlice({ do: "test", n });
+  await session.show();
+  const point = curve.at(-1)!;
+  return Math.max(...point.successes.filter((_, place) => agents[place]!.learns).map((k) => k / point.cases));
+}
+
+function shares(state: State): string {
+  const point = state.curve.at(-1)!;
+  return point.successes.map((k) => percent(k / point.cases)).join(" and ");
+}
+
+export function percent(share: number): string {
+  return `${Math.round(100 * share)} %`;
+}

@@ -1,0 +1,53 @@
+/** Long work in slices: how far it is, the time it still takes, and how large the next slice may be. */
+import type { Signal } from "@preact/signals";
+
+export interface Job {
+  label: string;
+  done: number;
+  total: number | null;
+  seconds: number; // since it began
+  secondsLeft: number | null;
+}
+
+export class Work {
+  stopped = false;
+  private readonly began = performance.now();
+
+  constructor(
+    private readonly job: Signal<Job | null>,
+    private readonly label: string,
+    private readonly total: number | null,
+  ) {
+    this.report(0);
+  }
+
+  report(done: number): void {
+    if (this.stopped) return;
+    const { label, total } = this;
+    const seconds = (performance.now() - this.began) / 1000;
+    const secondsLeft = total === null || done === 0 ? null : (seconds * (total - done)) / done;
+    this.job.value = { label, done, total, seconds, secondsLeft };
+  }
+
+  end(): void {
+    if (!this.stopped) this.job.value = null;
+    this.stopped = true;
+  }
+}
+
+/** Chooses slices of about `milliseconds`, from how long the last ones took. */
+export class Slices {
+  private size = 1;
+
+  constructor(private readonly milliseconds = 50) {}
+
+  next(left: number): number {
+    return Math.max(1, Math.min(left, Math.round(this.size)));
+  }
+
+  /** A slice of n took so long. It grows fourfold at most, as the first ones are not typical. */
+  took(n: number, milliseconds: number): void {
+    const fitting = (n * this.milliseconds) / Math.max(milliseconds, 0.1);
+    this.size = Math.min(Math.max(fitting, 1), 4 * n);
+  }
+}

@@ -1,0 +1,159 @@
+//! Lessons as files: TOML, whose unknown fields are errors.
+
+use serde::Deserialize;
+use serde_json::{Map, Value};
+
+use super::check::Step;
+use super::{Equation, Lesson, Question, Right, Task};
+use crate::setup::{AgentSetup, Setup};
+
+/// A lesson as it stands in its file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LessonFile {
+    id: String,
+    title: String,
+    minutes: u32,
+    background: String,
+    equation: EquationFile,
+    setup: SetupFile,
+    view: String,
+    #[serde(default)]
+    hidden: Vec<String>,
+    tasks: Vec<TaskFile>,
+    questions: Vec<QuestionFile>,
+    references: Vec<String>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct EquationFile {
+    text: String,
+    name: String,
+    means: String,
+}
+
+/// What differs from the defaults; in a task, from the lesson's setup.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SetupFile {
+    env: Option<String>,
+    options: Option<Map<String, Value>>,
+    profile: Option<String>,
+    config: Option<Map<String, Value>>,
+    seed: Option<u64>,
+    agents: Option<Vec<AgentSetup>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TaskFile {
+    id: String,
+    text: String,
+    setup: Option<SetupFile>,
+    done: Vec<Step>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct QuestionFile {
+    id: String,
+    text: String,
+    /// The first one is right; they are shown in the order of the alphabet.
+    choices: Option<Vec<String>>,
+    /// Least and greatest number that is right.
+    between: Option<[f64; 2]>,
+    unit: Option<String>,
+    hint: String,
+}
+
+impl LessonFile {
+    pub(super) fn read(text: &str) -> Result<Self, String> {
+        let file: Self = toml::from_str(text).map_err(|error| error.to_string())?;
+        let answered = |question: &QuestionFile| match &question.choices {
+            Some(choices) => choices.len() > 1 && question.between.is_none(),
+            None => question.between.is_some(),
+        };
+        match file.questions.iter().find(|question| !answered(question)) {
+            None => Ok(file),
+            Some(question) => Err(format!(
+                "question {:?} needs either two choices or more, or between",
+                question.id
+            )),
+        }
+    }
+
+    pub(super) fn lesson(self, number: usize) -> Lesson {
+        let setup = self.setup.on(&Setup {
+            env: "BabbleReach-v0".to_owned(),
+            options: Map::new(),
+            profile: "paper".to_owned(),
+            config: Map::new(),
+            seed: 0,
+            agents: vec![AgentSetup::hebb("paper")],
+        });
+        let task = |task: TaskFile| Task {
+            id: task.id,
+            text: task.text,
+            setup: task.setup.map(|file| file.on(&setup)),
+            done: task.done,
+        };
+        Lesson {
+            id: self.id,
+            number,
+            title: self.title,
+            minutes: self.minutes,
+            background: self.background,
+            equation: Equation {
+                text: self.equation.text,
+                name: self.equation.name,
+                means: self.equation.means,
+            },
+            tasks: self.tasks.into_iter().map(task).collect(),
+            questions: self
+                .questions
+                .into_iter()
+                .map(QuestionFile::question)
+                .collect(),
+            references: self.references,
+            view: self.view,
+            hidden: self.hidden,
+            setup,
+        }
+    }
+}
+
+impl SetupFile {
+    fn on(self, base: &Setup) -> Setup {
+        let base = base.clone();
+        Setup {
+            env: self.env.unwrap_or(base.env),
+            options: self.options.unwrap_or(base.options),
+            profile: self.profile.unwrap_or(base.profile),
+            config: self.config.unwrap_or(base.config),
+            seed: self.seed.unwrap_or(base.seed),
+            agents: self.agents.unwrap_or(base.agents),
+        }
+    }
+}
+
+impl QuestionFile {
+    fn question(self) -> Question {
+        let mut choices = self.choices;
+        let right = match (&choices, self.between) {
+            (Some(choices), _) => Right::Choice(choices[0].clone()),
+            (None, between) => Right::Between(between.unwrap_or_default()),
+        };
+        if let Some(choices) = &mut choices {
+            choices.sort();
+        }
+        Question {
+            id: self.id,
+            text: self.text,
+            choices,
+            unit: self.unit,
+            right,
+            hint: self.hint,
+        }
+    }
+}

@@ -3,6 +3,7 @@
 use std::iter;
 
 use babble_env::{Config, Executor, Task};
+use serde::de::{Deserializer, Error};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -81,6 +82,7 @@ struct Metadata<C, O> {
     /// Numbers of maps and rule.
     brain: C,
     /// Body and task that it babbled with.
+    #[serde(deserialize_with = "whole_config")]
     config: Config,
     /// Seed of its babbling.
     seed: u64,
@@ -365,6 +367,11 @@ fn shuffled<T: Babble>(
         *before = babble;
     }
     all
+}
+
+/// The config in a file. The code that reads a config is there once, which a browser downloads.
+fn whole_config<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Config, D::Error> {
+    Config::from_whole(Value::deserialize(deserializer)?).map_err(D::Error::custom)
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]

@@ -180,7 +180,7 @@ fn map_name(name: &str) -> Reply<MapName> {
         .map_err(|error| thrown(Fault::config("map", error.to_string())))
 }
 
-fn json(value: &impl Serialize) -> Reply<String> {
+fn json(value: &(impl Serialize + ?Sized)) -> Reply<String> {
     serde_json::to_string(value).map_err(|error| thrown(error.into()))
 }
 

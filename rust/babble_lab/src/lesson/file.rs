@@ -69,7 +69,8 @@ struct QuestionFile {
 
 impl LessonFile {
     pub(super) fn read(text: &str) -> Result<Self, String> {
-        let file: Self = toml::from_str(text).map_err(|error| error.to_string())?;
+        let value: Value = toml::from_str(text).map_err(|error| error.to_string())?;
+        let file: Self = serde_json::from_value(value).map_err(|error| error.to_string())?;
         let answered = |question: &QuestionFile| match &question.choices {
             Some(choices) => choices.len() > 1 && question.between.is_none(),
             None => question.between.is_some(),

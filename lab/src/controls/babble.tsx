@@ -54,17 +54,22 @@ export function BabbleControls({ session }: { session: Session }) {
         </Act>
       </div>
       <dl class="numbers">
-        {agents.map((agent, place) => (
-          <div key={place}>
-            <dt>
-              {agents.length === 1 ? "Learnt from" : `${place === 0 ? "First" : "Second"} agent learnt from`}
-            </dt>
-            <dd>
-              {agent.learnt.toLocaleString("en")} of {agent.babbled.toLocaleString("en")} babbles
-              {agent.babbled > 0 && ` (${percent(agent.learnt / agent.babbled)})`}
-            </dd>
-          </div>
-        ))}
+        {agents.map(
+          (agent, place) =>
+            agent.learns && (
+              <div key={place}>
+                <dt>
+                  {agents.length === 1
+                    ? "Learnt from"
+                    : `${place === 0 ? "First" : "Second"} agent learnt from`}
+                </dt>
+                <dd>
+                  {agent.learnt.toLocaleString("en")} of {agent.babbled.toLocaleString("en")} babbles
+                  {agent.babbled > 0 && ` (${percent(agent.learnt / agent.babbled)})`}
+                </dd>
+              </div>
+            ),
+        )}
       </dl>
     </Group>
   );

@@ -4,6 +4,7 @@ import type { Brain, MapActivity } from "../engine/contract";
 import { WEIGHTS } from "../maps/colours";
 import { HeatMap, strongest } from "../maps/heat-map";
 import { FROM_TOP, MapFigure } from "../maps/map-figure";
+import { plain } from "../session/playing";
 import type { Session } from "../session/session";
 
 type Association = Brain["associations"][number];
@@ -31,13 +32,13 @@ export function AssociationView(props: {
       const agent = session.shownAgent.value;
       await session.apply({ do: "lesion", agent, map, association: at, neurons });
       const { silenced } = session.state.value.agents[agent]!;
-      session.said.value = `${neurons.length} neurons of “${association[map].name}” silenced; ${silenced} in all.`;
+      session.said.value = `${neurons.length} neurons of “${plain(association[map].name)}” silenced; ${silenced} in all.`;
     });
   const bound = Math.max(...(weights?.activity ?? []).map(Math.abs), 1e-6);
   return (
     <div class="association">
       <MapFigure
-        title={`Input “${input.name}”`}
+        title={`Input “${plain(input.name)}”`}
         map={input}
         silenced={association.silencedInputs}
         {...on("input")}
@@ -53,7 +54,7 @@ export function AssociationView(props: {
         />
       )}
       <MapFigure
-        title={`Output “${output.name}”`}
+        title={`Output “${plain(output.name)}”`}
         map={output}
         silenced={association.silencedOutputs}
         {...on("output")}

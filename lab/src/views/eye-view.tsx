@@ -2,9 +2,13 @@
 import type { Sight } from "../engine/contract";
 import { strongest } from "../maps/heat-map";
 import { MapFigure } from "../maps/map-figure";
+import { plain } from "../session/playing";
 import type { Session } from "../session/session";
 
 import { Picture } from "./picture";
+
+/** Share of the image's edge that the fovea has: 63 of 630 pixels. */
+const FOVEA = 0.1;
 
 export function EyeView({ session }: { session: Session }) {
   const { sight, pictures, brain } = session.shown.value;
@@ -16,11 +20,12 @@ export function EyeView({ session }: { session: Session }) {
       <Picture
         pixels={pictures.eye}
         mark={sight.centroid}
+        square={FOVEA}
         name={`What the eye sees: ${seen}`}
         caption={
           <>
             The eye’s image. Cross: centroid of the red pixels, which the reflex (Eq. 1) brings to the middle.
-            Now: {seen}. {angles(sight)}
+            Square: the fovea. Now: {seen}. {angles(sight)}
           </>
         }
       />
@@ -28,7 +33,7 @@ export function EyeView({ session }: { session: Session }) {
         <Picture
           pixels={pictures.fovea}
           name="The fovea, the middle of the image"
-          caption="The fovea: the middle of the image, larger."
+          caption="The fovea: the middle tenth of the image."
         />
       )}
       {pictures.edges && (
@@ -40,7 +45,7 @@ export function EyeView({ session }: { session: Session }) {
       )}
       {input && (
         <div>
-          <MapFigure title={`Input map “${input.input.name}”`} map={input.input} />
+          <MapFigure title={`Input map “${plain(input.input.name)}”`} map={input.input} />
           <p class="caption">
             The map that it becomes (Eq. 3): each neuron is active if what is seen is near its own value.
             Strongest neuron: {strongest(input.input.activity)[1].toFixed(2)}.

@@ -1,5 +1,5 @@
 /** Success on the test cases against the babbles learnt from, of each agent. */
-import type { CurvePoint, State } from "../engine/contract";
+import type { State } from "../engine/contract";
 import { percent } from "../session/babbling";
 import { agentTitle } from "./agent-title";
 
@@ -11,12 +11,12 @@ interface Point {
 }
 
 export function LearningCurve({ state }: { state: State }) {
-  const { curve, setup } = state;
-  const lines = setup.agents.map((_, agent) => pointsOf(curve, agent));
+  const { setup } = state;
+  const lines = setup.agents.map((_, agent) => pointsOf(state, agent));
   const most = Math.max(1, ...lines.flat().map(({ learnt }) => learnt));
   const x = (learnt: number) => LEFT + (learnt / most) * (WIDTH - LEFT - RIGHT);
   const y = (success: number) => TOP + (1 - success) * (HEIGHT - TOP - BOTTOM);
-  const text = lines.map((line, agent) => lineText(agentTitle(setup, agent), line)).join(" ");
+  const text = lines.map((line, agent) => lineText(state, agent, line)).join(" ");
   return (
     <figure class="curve">
       <figcaption>Learning curve</figcaption>
@@ -53,7 +53,7 @@ export function LearningCurve({ state }: { state: State }) {
       <ul class="key">
         {lines.map((line, agent) => (
           <li key={agent} class={`agent${agent + 1}`}>
-            {lineText(agentTitle(setup, agent), line)}
+            {lineText(state, agent, line)}
           </li>
         ))}
       </ul>
@@ -61,14 +61,21 @@ export function LearningCurve({ state }: { state: State }) {
   );
 }
 
-function pointsOf(curve: CurvePoint[], agent: number): Point[] {
+/** An agent that does not learn is drawn where the other one is. */
+function pointsOf({ curve, agents }: State, agent: number): Point[] {
+  const { learns } = agents[agent]!;
   return curve
     .filter((point) => point.successes.length > agent)
-    .map((point) => ({ learnt: point.learnt[agent]!, success: point.successes[agent]! / point.cases }));
+    .map((point) => ({
+      learnt: learns ? point.learnt[agent]! : Math.max(...point.learnt),
+      success: point.successes[agent]! / point.cases,
+    }));
 }
 
-function lineText(title: string, line: Point[]): string {
+function lineText({ setup, agents }: State, agent: number, line: Point[]): string {
+  const title = agentTitle(setup, agent);
   const last = line.at(-1);
   if (!last) return `${title}: not tested yet.`;
-  return `${title}: ${percent(last.success)} success after ${last.learnt.toLocaleString("en")} babbles.`;
+  const after = agents[agent]!.learns ? ` after ${last.learnt.toLocaleString("en")} babbles` : "";
+  return `${title}: ${percent(last.success)} success${after}.`;
 }

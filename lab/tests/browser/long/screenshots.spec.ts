@@ -10,7 +10,7 @@ const STATES = {
 for (const [name, hash] of Object.entries(STATES)) {
   for (const view of ["scene", "eye", "brain", "all"]) {
     for (const width of [360, 820, 1400]) {
-      test(`${name}, ${view}, ${width} pixels`, async ({ page }, { outputPath }) => {
+      test(`${name}, ${view}, ${width} pixels`, async ({ page }, info) => {
         await page.setViewportSize({ width, height: 900 });
         await page.emulateMedia({ colorScheme: width === 820 ? "dark" : "light" });
         await open(page, `${hash}&view=${view}`);
@@ -19,7 +19,7 @@ for (const [name, hash] of Object.entries(STATES)) {
         await button(page, "Next case").click();
         await expectNoSidewaysScroll(page);
         await expectAccessible(page);
-        await page.screenshot({ path: outputPath(`../${name}-${view}-${width}.png`), fullPage: true });
+        await page.screenshot({ path: info.outputPath(`${name}-${view}-${width}.png`), fullPage: true });
       });
     }
   }

@@ -86,6 +86,8 @@ lab-engine: ## Compile the lab's engine for WebAssembly into lab/src/engine/wasm
 	RUSTFLAGS='-C target-feature=+simd128' cargo build --release --target wasm32-unknown-unknown \
 		--target-dir target/lab -p babble_wasm
 	cargo run --quiet --release -p babble_bindgen -- $(WASM) lab/src/engine/wasm
+	mkdir -p lab/public/policies
+	cp gym_babble/lab/policies/*.safetensors lab/public/policies/
 
 lint: lint-rust lint-python lint-workflows deny ## Check formatting, lints and types of both languages, and what they depend on
 

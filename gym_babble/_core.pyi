@@ -12,6 +12,7 @@ __all__ = [
     "ConjunctiveMap",
     "Learner",
     "Plans",
+    "PolicyNetwork",
     "PopulationMap",
     "Reference",
     "Task",
@@ -265,6 +266,16 @@ class Reference:
         self, task: Task, senses: NDArray[np.float32], starts: list[bool], plans: Plans | None
     ) -> tuple[NDArray[np.float32], Plans]: ...
     def decide(self, task: Task, senses: NDArray[np.float32]) -> NDArray[np.float64]: ...
+
+@final
+class PolicyNetwork:
+    @staticmethod
+    def load(bytes: bytes) -> PolicyNetwork: ...  # noqa: A002 - Rust's name
+    def about(self) -> str: ...
+    def save(self) -> bytes: ...
+    def predict(
+        self, senses: NDArray[np.float32], starts: list[bool], plans: Plans | None
+    ) -> tuple[NDArray[np.float32], Plans]: ...
 
 @final
 class Learner:

@@ -215,11 +215,12 @@ class ChosenSenses(BaseFeaturesExtractor):
             raise ConfigError("senses is empty: it must have at least one")
         width = sum(spaces.flatdim(observation_space[name]) for name in senses)
         super().__init__(observation_space, width)
-        self._senses = tuple(senses)
+        self.senses = tuple(senses)
+        """Names of the senses, in their order."""
 
     def forward(self, observations: dict[str, torch.Tensor]) -> torch.Tensor:
         """The chosen senses of a batch of observations, concatenated (n, width)."""
-        return torch.cat([observations[name] for name in self._senses], dim=1)
+        return torch.cat([observations[name] for name in self.senses], dim=1)
 
 
 class ProgressBar(BaseCallback):

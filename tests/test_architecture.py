@@ -80,7 +80,7 @@ LAYERS = (
         "sb3",
         "rllib",
     ),
-    *("study", "viz", "paper", "report", "cli"),
+    *("lab", "study", "viz", "paper", "report", "cli"),
 )
 
 HEAVY_MODULES = {

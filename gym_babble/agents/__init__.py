@@ -8,6 +8,7 @@ from gym_babble.agents.hebb import HebbBabbling
 from gym_babble.agents.joints import Joints
 from gym_babble.agents.loading import load_agent
 from gym_babble.agents.neighbours import NearestNeighbours
+from gym_babble.agents.network import PolicyNetwork
 from gym_babble.agents.reference import Oracle, Random, ReflexOnly, Scripted
 from gym_babble.agents.reward_hebb import RewardHebb
 
@@ -20,6 +21,7 @@ __all__ = [
     "Joints",
     "NearestNeighbours",
     "Oracle",
+    "PolicyNetwork",
     "Random",
     "ReflexOnly",
     "RewardHebb",

@@ -19,7 +19,7 @@ from gym_babble.errors import ConfigError
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-__all__ = ["MARK", "EnvArguments", "arguments_for", "carried", "marked"]
+__all__ = ["MARK", "EnvArguments", "arguments_for", "carried", "check_same", "marked"]
 
 MARK = "gym_babble_env"
 """Attribute of a model of stable-baselines3 that says where it learnt; its zip keeps it."""
@@ -171,11 +171,11 @@ def arguments_for(
         wanted = replace(wanted, config=given)
     made = EnvArguments.of(wanted.interface())
     if own is not None:
-        _check_same(own, made)
+        check_same(own, made)
     return made
 
 
-def _check_same(own: EnvArguments, made: EnvArguments) -> None:
+def check_same(own: EnvArguments, made: EnvArguments) -> None:
     """Raises `ConfigError` where the caller's environment contradicts the agent's own."""
     acts = f"the agent acts in {own.title}"
     if own.task != made.task:

@@ -18,6 +18,7 @@ from gym_babble.agents.goal_babbling import GoalBabbling
 from gym_babble.agents.hebb import HebbBabbling
 from gym_babble.agents.models import fitted, is_model, load_model, load_normalizer
 from gym_babble.agents.neighbours import NearestNeighbours
+from gym_babble.agents.network import PolicyNetwork
 from gym_babble.agents.reference import Oracle, Random, ReflexOnly, Scripted
 from gym_babble.agents.reward_hebb import RewardHebb
 from gym_babble.agents.trained import TRAINED, trained_file
@@ -42,8 +43,11 @@ __all__ = [
 ]
 
 REFERENCES = ("random", "scripted", "oracle", "reflex-only")
-IN_FILES = {key_of(cls.KIND): cls for cls in (NearestNeighbours, GoalBabbling, RewardHebb)}
-"""Agents that learn in Python, by what their files' headers call them."""
+IN_FILES: dict[str, Any] = {
+    PolicyNetwork.KEY: PolicyNetwork,
+    **{key_of(cls.KIND): cls for cls in (NearestNeighbours, GoalBabbling, RewardHebb)},
+}
+"""Exported networks, and agents that learn in Python, by what their files' headers call them."""
 PATTERN = "BabbleReachPattern-v0"
 # Where an agent from a file acts unless told, by its task.
 ACTS_IN = {"reach": PATTERN, "grasp": "BabbleGrasp-v0"}
@@ -60,8 +64,9 @@ class LoadedAgent:
 def load_agent(path: str | Path, env: EnvLike | None = None) -> HebbBabbling | Learning | Any:
     """The agent in a file that `save` wrote, or one that comes with the package.
 
-    The file has an agent that learns by babbling, of any kind and either task. Of those that come
-    with the package some are models of stable-baselines3.
+    The file has an agent that learns by babbling, of any kind and either task, or a network that
+    `gym-babble export-policy` wrote. Of those that come with the package some are models of
+    stable-baselines3.
 
     Args:
         path: The file, or one of `gym_babble.agents.trained.TRAINED`, as "reach.hebb-paper".

@@ -13,6 +13,7 @@ from gym_babble.cli.compare import compare
 from gym_babble.cli.doctor import doctor
 from gym_babble.cli.evaluate import evaluate
 from gym_babble.cli.export import export
+from gym_babble.cli.export_policy import export_policy
 from gym_babble.cli.info import info
 from gym_babble.cli.list import list_environments
 from gym_babble.cli.record import record
@@ -32,6 +33,7 @@ app = typer.Typer(
 app.command("list")(list_environments)
 for command in (info, babble, evaluate, compare, record, export, doctor):
     app.command()(command)
+app.command("export-policy")(export_policy)
 # Its options are the server's own, which also shows the help.
 app.command(
     context_settings={

@@ -81,6 +81,15 @@ pub fn keys(bytes: &[u8]) -> Result<Vec<String>, AgentError> {
     Ok(texts.map_or_else(Vec::new, |texts| texts.keys().cloned().collect()))
 }
 
+/// How many tensors a file's bytes hold.
+///
+/// # Errors
+/// [`AgentError::File`] for bytes that are no safetensors file.
+pub fn count(bytes: &[u8]) -> Result<usize, AgentError> {
+    let (_, header) = SafeTensors::read_metadata(bytes).map_err(|e| file(&e))?;
+    Ok(header.tensors().len())
+}
+
 /// The shape and the numbers of a tensor that was read.
 pub type Shaped = (Vec<usize>, Vec<f32>);
 

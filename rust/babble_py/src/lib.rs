@@ -40,7 +40,7 @@ mod _core {
     #[pymodule_export]
     use crate::learner::{Learner, babble, babble_steps, babble_to, brain_json, learnable_babbles};
     #[pymodule_export]
-    use crate::policy::{Plans, Reference, act_on, check_deciding};
+    use crate::policy::{Plans, PolicyNetwork, Reference, act_on, check_deciding};
     #[pymodule_export]
     use crate::reach::{movement, place, posture_at};
     #[pymodule_export]

@@ -6,6 +6,7 @@ use babble_agent::erased::{chaining, deciding};
 use babble_agent::{AgentError, Decisions, Plan, Policy, Random, predict, reference};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 
 use crate::task::Task;
 use crate::{convert, errors, signals};
@@ -208,5 +209,46 @@ impl Reference {
 impl Reference {
     fn policy(&self, task: &Task) -> PyResult<Box<dyn Policy + '_>> {
         reference(&self.name, &task.task, &self.random).map_err(errors::agent)
+    }
+}
+
+/// A network that was trained elsewhere and acts step by step.
+#[pyclass(frozen, module = "gym_babble._core")]
+#[derive(Debug)]
+pub(crate) struct PolicyNetwork {
+    network: babble_agent::PolicyNetwork,
+}
+
+#[pymethods]
+impl PolicyNetwork {
+    /// The network in the bytes of a safetensors file.
+    #[staticmethod]
+    fn load(bytes: &[u8]) -> PyResult<Self> {
+        let network = babble_agent::PolicyNetwork::load(bytes).map_err(errors::agent)?;
+        Ok(Self { network })
+    }
+
+    /// What is known of it beside its weights, as JSON.
+    fn about(&self) -> PyResult<String> {
+        convert::json(self.network.about())
+    }
+
+    /// The network as the bytes of a safetensors file.
+    fn save<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        Ok(PyBytes::new(
+            py,
+            &self.network.save().map_err(errors::agent)?,
+        ))
+    }
+
+    /// Actions (n, k) for flat senses (n, m), and the plans for the next call.
+    fn predict<'py>(
+        &self,
+        py: Python<'py>,
+        senses: PyReadonlyArray2<'py, f32>,
+        starts: Vec<bool>,
+        plans: Option<&Plans>,
+    ) -> PyResult<(Bound<'py, PyArray2<f32>>, Plans)> {
+        act(py, &self.network, &senses, &starts, plans, 1)
     }
 }

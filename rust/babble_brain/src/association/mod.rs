@@ -190,9 +190,10 @@ impl Association {
     }
 }
 
-/// `Σ_i w_i g_i` in [`LANES`] partial sums, which fit vector registers on every machine and give
-/// the same bits on all.
-fn dot(w: &[f32], g: &[f32]) -> f32 {
+/// `Σ_i w_i g_i` in 32 partial sums, which fit vector registers on every machine and give the same bits on
+/// all.
+#[must_use]
+pub fn dot(w: &[f32], g: &[f32]) -> f32 {
     let mut sums = [0.0_f32; LANES];
     let (w_lanes, w_rest) = w.as_chunks::<LANES>();
     let (g_lanes, g_rest) = g.as_chunks::<LANES>();

@@ -1,6 +1,7 @@
 /** Agents as files, Python for the same agent, and the record to hand in. */
 import { useRef, useState } from "preact/hooks";
 import type { Session } from "../session/session";
+import { copyText } from "../shell/copy";
 import { Act, Group } from "./group";
 
 export function FileControls({ session }: { session: Session }) {
@@ -76,10 +77,10 @@ function download(blob: Blob, name: string): void {
 function PythonButton({ session, agent }: { session: Session; agent: number }) {
   const dialog = useRef<HTMLDialogElement>(null);
   const [code, setCode] = useState("");
-  const [copied, setCopied] = useState(false);
+  const [said, setSaid] = useState("");
   const open = async () => {
     setCode(await session.engine.python(agent));
-    setCopied(false);
+    setSaid("");
     dialog.current!.showModal();
   };
   return (
@@ -92,13 +93,16 @@ function PythonButton({ session, agent }: { session: Session; agent: number }) {
         {/* biome-ignore lint/a11y/noNoninteractiveTabindex: it scrolls by keyboard */}
         <pre tabIndex={0}>{code}</pre>
         <div class="row">
-          <Act session={session} work={() => navigator.clipboard.writeText(code).then(() => setCopied(true))}>
+          <Act
+            session={session}
+            work={async () => setSaid((await copyText(code)) ? "Copied." : "Select the text and copy it.")}
+          >
             Copy
           </Act>
           <button type="button" onClick={() => dialog.current!.close()}>
             Close
           </button>
-          <span aria-live="polite">{copied && "Copied."}</span>
+          <span aria-live="polite">{said}</span>
         </div>
       </dialog>
     </>

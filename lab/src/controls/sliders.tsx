@@ -45,6 +45,7 @@ function SliderRow({ session, slider, agent }: { session: Session; slider: Slide
     <div class="slider">
       <span class="label">
         {slider.symbol && <i class="symbol">{slider.symbol}</i>} {label}
+        {slider.unit && <span class="unit"> [{slider.unit}]</span>}
       </span>
       {slider.choices ? (
         <select
@@ -109,7 +110,6 @@ function NumberRow(props: { slider: Slider; label: string; value: number; set: (
         value={shown}
         onChange={(event) => commit(event.currentTarget.valueAsNumber)}
       />
-      <span class="unit">{slider.unit}</span>
     </>
   );
 }

@@ -67,7 +67,9 @@ export class Handle {
   /** Places the button over its part. */
   project(width: number, height: number): void {
     const { x, y } = new Vector3(...this.shown, 0).project(this.camera);
-    const [left, top] = [(0.5 + 0.5 * x) * width, (0.5 - 0.5 * y) * height];
+    // Beside the picture a handle waits at its edge.
+    const inside = (at: number, edge: number) => Math.min(edge, Math.max(0, at * edge));
+    const [left, top] = [inside(0.5 + 0.5 * x, width), inside(0.5 - 0.5 * y, height)];
     this.button.style.transform = `translate(${left.toFixed(1)}px, ${top.toFixed(1)}px)`;
   }
 

@@ -140,6 +140,7 @@ class View implements SceneView {
   }
 
   setCase(given: Case, canDrag: boolean): void {
+    if (JSON.stringify(given) !== JSON.stringify(this.given)) this.beginTrails();
     this.given = given;
     const places = canDrag
       ? draggable(this.options.parts).filter(
@@ -164,6 +165,15 @@ class View implements SceneView {
   clearTrails(): void {
     for (const { trail } of this.players) trail.clear();
     this.draw();
+  }
+
+  /** Of another case: they begin where the fingertips are now. */
+  private beginTrails(): void {
+    for (const [agent, { trail }] of this.players.entries()) {
+      trail.clear();
+      const scene = this.scenes[agent];
+      if (scene !== undefined) trail.add(scene.fingertip);
+    }
   }
 
   setTheme(theme: Theme): void {
@@ -251,6 +261,13 @@ class View implements SceneView {
       const at = placeOf(handle.part, this.given, this.options.parts, this.arm);
       if (at !== null) handle.stand(at);
     }
+    this.projectHandles();
+  }
+
+  private projectHandles(): void {
+    this.orbit.camera.updateMatrixWorld();
+    const { clientWidth: width, clientHeight: height } = this.frame;
+    for (const handle of this.handles) handle.project(width, height);
   }
 
   private handleEvents() {
@@ -310,8 +327,7 @@ class View implements SceneView {
     this.pending = requestAnimationFrame((now) => {
       this.pending = 0;
       const gliding = this.players.map(({ actor }) => actor.glide(now)).includes(true);
-      const { clientWidth: width, clientHeight: height } = this.frame;
-      for (const handle of this.handles) handle.project(width, height);
+      this.projectHandles();
       this.renderer.render(this.stage, this.orbit.camera);
       if (gliding) this.draw();
     });

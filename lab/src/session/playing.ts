@@ -11,7 +11,7 @@ const MOST_STEPS = 1000;
 /** Plays until the episode ends or someone stops it; begins one of the next case where none runs. */
 export async function play(session: Session): Promise<void> {
   if (!runs(session.state.value.episode)) await session.recall(null);
-  const work = session.begin("Playing", null);
+  const work = session.begin("Playing", null, false);
   const slices = new Slices(FRAME_MS);
   let before = performance.now();
   try {

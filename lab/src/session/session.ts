@@ -67,9 +67,9 @@ export class Session {
   }
 
   /** As apply, without showing: for a slice of long work. */
-  async applySlice(command: Command): Promise<State> {
+  async applySlice(command: Command, link: Partial<Link> = {}): Promise<State> {
     if (command.do === "change") await addShippedPolicies(this.engine, command.setup);
-    return this.take(this.engine.apply(command));
+    return this.take(this.engine.apply(command), link);
   }
 
   /** Goes on with another setup; the same one is no command. */
@@ -97,9 +97,9 @@ export class Session {
   }
 
   /** Begins anew: nothing is learnt, and the record is empty. */
-  async open(setup: Setup): Promise<void> {
+  async open(setup: Setup, link: Partial<Link> = {}): Promise<void> {
     this.stop();
-    await this.take(opened(this.engine, setup));
+    await this.take(opened(this.engine, setup), link);
     await this.show();
   }
 
@@ -121,16 +121,15 @@ export class Session {
   /** Begins a lesson with its own setup, or leaves the one that runs. */
   async beginLesson(lesson: Lesson | null): Promise<void> {
     const setup = lesson?.setup ?? this.state.value.setup;
-    await this.open(setup);
     const view = lesson && isView(lesson.view) ? lesson.view : "all";
-    this.arrange({ setup, lesson: lesson?.id ?? null, view, hidden: lesson?.hidden.filter(isControl) ?? [] });
-    await this.show();
+    const hidden = lesson?.hidden.filter(isControl) ?? [];
+    await this.open(setup, { lesson: lesson?.id ?? null, view, hidden });
   }
 
   /** Begins long work in the place of other long work. */
-  begin(label: string, total: number | null): Work {
+  begin(label: string, total: number | null, bar = true): Work {
     this.stop();
-    this.work = new Work(this.job, label, total);
+    this.work = new Work(this.job, label, total, bar);
     return this.work;
   }
 
@@ -164,9 +163,9 @@ export class Session {
     const { link, faults } = readLink(hash, this.defaults);
     this.linkFaults.value = faults.map(({ key, problem }) => `${key}: ${problem}`);
     this.stop();
-    if (link.lesson !== (this.lesson.value?.id ?? null)) await this.open(link.setup);
-    else await this.change(link.setup);
-    this.arrange(link);
+    if (link.lesson !== (this.lesson.value?.id ?? null)) return this.open(link.setup, link);
+    if (same(link.setup, this.state.value.setup)) this.arrange(link);
+    else await this.applySlice({ do: "change", setup: link.setup }, link);
     await this.show();
   }
 
@@ -185,19 +184,22 @@ export class Session {
     return this.view.value === "all" || this.view.value === view;
   }
 
-  private arrange(link: Link): void {
+  private arrange({ lesson, view, hidden }: Partial<Link>): void {
     batch(() => {
-      this.lesson.value = this.defaults.lessons.find(({ id }) => id === link.lesson) ?? null;
-      this.view.value = link.view;
-      this.hidden.value = link.hidden;
+      if (lesson !== undefined)
+        this.lesson.value = this.defaults.lessons.find(({ id }) => id === lesson) ?? null;
+      if (view !== undefined) this.view.value = view;
+      if (hidden !== undefined) this.hidden.value = hidden;
     });
   }
 
-  private async take(answer: Promise<State>): Promise<State> {
+  /** Takes over what the engine answers, and what a link says besides, together. */
+  private async take(answer: Promise<State>, link: Partial<Link> = {}): Promise<State> {
     try {
       const state = await answer;
       batch(() => {
         this.state.value = state;
+        this.arrange(link);
         this.fault.value = null;
         if (this.shownAgent.value >= state.setup.agents.length) this.shownAgent.value = 0;
       });

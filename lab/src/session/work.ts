@@ -4,7 +4,9 @@ import type { Signal } from "@preact/signals";
 export interface Job {
   label: string;
   done: number;
-  total: number | null;
+  total: number | null; // null if nobody knows
+  /** Whether it is waited for, so that a bar shows that it goes on. */
+  bar: boolean;
   seconds: number; // since it began
   secondsLeft: number | null;
 }
@@ -17,16 +19,17 @@ export class Work {
     private readonly job: Signal<Job | null>,
     private readonly label: string,
     private readonly total: number | null,
+    private readonly bar: boolean,
   ) {
     this.report(0);
   }
 
   report(done: number): void {
     if (this.stopped) return;
-    const { label, total } = this;
+    const { label, total, bar } = this;
     const seconds = (performance.now() - this.began) / 1000;
     const secondsLeft = total === null || done === 0 ? null : (seconds * (total - done)) / done;
-    this.job.value = { label, done, total, seconds, secondsLeft };
+    this.job.value = { label, done, total, bar, seconds, secondsLeft };
   }
 
   end(): void {

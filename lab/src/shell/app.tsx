@@ -28,35 +28,48 @@ export function App({ session }: { session: Session }) {
       <Faults session={session} />
       <main class={session.lesson.value ? "with-lesson" : ""}>
         <LessonPanel session={session} />
-        {session.sees("scene") && (
-          <View name="scene" title="Scene">
-            <SceneView session={session} />
-          </View>
-        )}
-        <section id="controls" class="controls" aria-labelledby="controls-title" tabIndex={-1}>
-          <h2 id="controls-title">Controls</h2>
-          <BabbleControls session={session} />
-          <RecallControls session={session} />
-          <AgentControls session={session} />
-          <RuleControls session={session} />
-          <SliderControls session={session} />
-          <BeginControls session={session} />
-          <FileControls session={session} />
-        </section>
-        {session.sees("eye") && (
-          <View name="eye" title="Eye">
-            <ShownAgent session={session} name="eye" />
-            <EyeView session={session} />
-          </View>
-        )}
-        {session.sees("brain") && (
-          <View name="brain" title="Brain">
-            <ShownAgent session={session} name="brain" />
-            <BrainView session={session} />
-          </View>
-        )}
+        <Views session={session} />
       </main>
       <Status session={session} />
+    </>
+  );
+}
+
+/** The views that are shown. The controls come after the first one, for narrow pages. */
+function Views({ session }: { session: Session }) {
+  const [first, ...others] = [
+    session.sees("scene") && (
+      <View key="scene" name="scene" title="Scene">
+        <SceneView session={session} />
+      </View>
+    ),
+    session.sees("eye") && (
+      <View key="eye" name="eye" title="Eye">
+        <ShownAgent session={session} name="eye" />
+        <EyeView session={session} />
+      </View>
+    ),
+    session.sees("brain") && (
+      <View key="brain" name="brain" title="Brain">
+        <ShownAgent session={session} name="brain" />
+        <BrainView session={session} />
+      </View>
+    ),
+  ].filter(Boolean);
+  return (
+    <>
+      {first}
+      <section key="controls" id="controls" class="controls" aria-labelledby="controls-title" tabIndex={-1}>
+        <h2 id="controls-title">Controls</h2>
+        <BabbleControls session={session} />
+        <RecallControls session={session} />
+        <AgentControls session={session} />
+        <RuleControls session={session} />
+        <SliderControls session={session} />
+        <BeginControls session={session} />
+        <FileControls session={session} />
+      </section>
+      {others}
     </>
   );
 }

@@ -2,6 +2,7 @@
 import { useState } from "preact/hooks";
 import { VIEWS, type View } from "../page-state";
 import type { Session } from "../session/session";
+import { copyText } from "./copy";
 import { setTheme, type Theme, theme } from "./theme";
 
 const VIEW_TITLES: Record<View, string> = { all: "All", scene: "Scene", eye: "Eye", brain: "Brain" };
@@ -90,11 +91,8 @@ function LessonSelect({ session }: { session: Session }) {
 
 function CopyLink() {
   const [said, setSaid] = useState("");
-  const copy = () =>
-    navigator.clipboard.writeText(location.href).then(
-      () => setSaid("Copied."),
-      () => setSaid("Copy the address of this page instead."),
-    );
+  const copy = async () =>
+    setSaid((await copyText(location.href)) ? "Copied." : "Copy the address of this page instead.");
   return (
     <span>
       <button type="button" onClick={() => void copy()}>

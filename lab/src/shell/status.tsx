@@ -29,6 +29,7 @@ function Progress({ job, stop }: { job: Job; stop: () => void }) {
     <div class="row">
       <span>{text}</span>
       {total !== null && takes > LONG && <progress value={done} max={total} aria-label={label} />}
+      {job.bar && total === null && <progress aria-label={label} />}
       {secondsLeft !== null && takes > LONG && <span>{timeLeft(secondsLeft)} left</span>}
       <button type="button" onClick={stop}>
         Stop

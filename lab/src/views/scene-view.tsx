@@ -5,7 +5,8 @@ import { runs } from "../session/playing";
 import type { Session } from "../session/session";
 import { isDark, onThemeChange } from "../shell/theme";
 
-const CONTROL_SECONDS = 0.05;
+/** How long a pose glides to the next one at real time, and at least [s]. */
+const [CONTROL_SECONDS, FRAME_SECONDS] = [0.05, 0.033];
 
 export function SceneView({ session }: { session: Session }) {
   const container = useRef<HTMLDivElement>(null);
@@ -73,7 +74,7 @@ function show(view: Drawn, session: Session): void {
   if (step < (steps.get(view) ?? 0)) view.clearTrails();
   steps.set(view, step);
   const playing = session.job.value !== null && runs(episode);
-  view.show(scenes, playing ? CONTROL_SECONDS / Math.max(1, session.speed.value) : 0);
+  view.show(scenes, playing ? Math.max(FRAME_SECONDS, CONTROL_SECONDS / session.speed.value) : 0);
   view.setCase(episode?.case ?? {}, episode !== null && !playing);
   if (playing) session.said.value = view.describe(episode);
 }

@@ -7,6 +7,9 @@ export async function open(page: Page, hash = ""): Promise<void> {
   page.on("pageerror", (error) => {
     throw error;
   });
+  page.on("console", (message) => {
+    if (message.type() === "error") throw new Error(message.text());
+  });
   await page.goto(hash === "" ? "./" : `./#${hash}`);
   await expect(page.getByRole("heading", { name: "Controls" })).toBeVisible();
 }

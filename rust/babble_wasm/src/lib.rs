@@ -50,7 +50,7 @@ pub fn check_rule(rule: &str) -> Reply<String> {
 /// A fault.
 #[wasm_bindgen]
 pub fn lessons() -> Reply<String> {
-    json(babble_lab::lessons())
+    json(&babble_lab::lessons())
 }
 
 /// A session.

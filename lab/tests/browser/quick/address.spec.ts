@@ -31,6 +31,22 @@ test("a change is in the address, and back takes it away", async ({ page }) => {
   await expect(page.getByText(/^100 of/)).toBeVisible();
 });
 
+test("forward and back through views and changes end where they began", async ({ page }) => {
+  await open(page, "agent=conjunctive");
+  await page.getByRole("radio", { name: "Eye" }).check();
+  await page.getByLabel("Second agent, beside it").selectOption("random");
+  await page.getByRole("radio", { name: "Brain" }).check();
+  await expect(page).toHaveURL(/agent=conjunctive&agent2=random&view=brain$/);
+  for (const address of [/agent2=random&view=eye$/, /conjunctive&view=eye$/, /#agent=conjunctive$/]) {
+    await page.goBack();
+    await expect(page).toHaveURL(address);
+  }
+  await page.goForward();
+  await page.goForward();
+  await expect(page).toHaveURL(/agent2=random&view=eye$/);
+  await expect(page.getByLabel("Second agent, beside it")).toHaveValue("random");
+});
+
 test("a link hides controls and chooses the view", async ({ page }) => {
   await open(page, "view=eye&hide=sliders,rule");
   await expect(page.getByRole("heading", { name: "Eye" })).toBeVisible();

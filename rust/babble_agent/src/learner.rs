@@ -3,7 +3,6 @@
 use std::iter;
 
 use babble_env::{Config, Executor, Task};
-use serde::de::{Deserializer, Error};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -11,7 +10,7 @@ use crate::babbling::{Babble, Babbling};
 use crate::error::AgentError;
 use crate::network::Network;
 use crate::rule::RuleOfOnesOwn;
-use crate::tensors;
+use crate::tensors::{self, whole_config};
 
 /// Version of the files.
 const VERSION: u32 = 4;
@@ -367,11 +366,6 @@ fn shuffled<T: Babble>(
         *before = babble;
     }
     all
-}
-
-/// The config in a file. The code that reads a config is there once, which a browser downloads.
-fn whole_config<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Config, D::Error> {
-    Config::from_whole(Value::deserialize(deserializer)?).map_err(D::Error::custom)
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use babble_env::Executor;
-use babble_lab::{AgentSetup, Command, Fault, Lab, Setup, default_setup};
+use babble_lab::{AgentSetup, Command, Fault, Lab, Policies, Setup, default_setup};
 
 fn main() -> Result<(), Fault> {
     for (env, variant, n, slice) in [
@@ -16,7 +16,7 @@ fn main() -> Result<(), Fault> {
             agents: vec![AgentSetup::hebb(variant)],
             ..default_setup(env)?
         };
-        let mut lab = Lab::open(setup, Executor::new(1)?)?;
+        let mut lab = Lab::open(setup, Policies::default(), Executor::new(1)?)?;
         let started = Instant::now();
         for _ in 0..n / slice {
             lab.apply(&Command::Babble { n: slice })?;

@@ -91,13 +91,12 @@ impl Lab {
             .commands
             .last_mut()
             .is_some_and(|last| last.merge(command));
-        match self.history.last_mut().filter(|_| merged) {
-            Some(earlier) => earlier.merge(event),
-            None => {
-                self.commands.push(command.clone());
-                self.history.push(event);
-                self.undo.push(before);
-            }
+        if let Some(earlier) = self.history.last_mut().filter(|_| merged) {
+            earlier.merge(event);
+        } else {
+            self.commands.push(command.clone());
+            self.history.push(event);
+            self.undo.push(before);
         }
         Ok(())
     }
@@ -200,9 +199,8 @@ impl Lab {
         let mut setup = (*self.setup).clone();
         let task = learner.task();
         if task_name(&setup)? != task {
-            setup.env = babble_env::registry::task(task)?.environments[0]
-                .id
-                .to_owned();
+            let first = &babble_env::registry::task(task)?.environments[0];
+            first.id.clone_into(&mut setup.env);
             setup.options = Map::new();
         }
         let config = learner.config();

@@ -242,7 +242,9 @@ fn a_rule_of_ones_own_learns_in_slices_as_at_once() {
             rule: Some(rule),
         };
         let mut lab = lab(setup);
-        n.iter().for_each(|&n| lab.apply(&babble(n)).unwrap());
+        for &n in n {
+            lab.apply(&babble(n)).unwrap();
+        }
         lab
     };
     assert_eq!(own(&[1, 150, 49]).hash(), own(&[200]).hash());

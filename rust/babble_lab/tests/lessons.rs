@@ -3,6 +3,8 @@
 mod common;
 
 use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
 
 use babble_lab::lesson::{Lesson, lesson, lessons};
 use babble_lab::{Command, Lab, MapName, Setup};
@@ -128,6 +130,26 @@ fn answer(question: &str, value: &Value) -> Command {
 fn patch(rows: std::ops::Range<usize>, columns: std::ops::Range<usize>) -> Vec<usize> {
     rows.flat_map(|row| columns.clone().map(move |column| 21 * row + column))
         .collect()
+}
+
+/// Would catch a file that was changed without the one that the engine reads.
+#[test]
+fn the_engine_reads_what_the_files_say() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/lessons");
+    let text = |path: &Path| fs::read_to_string(path).unwrap();
+    let mut paths: Vec<_> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().unwrap() == "toml")
+        .collect();
+    paths.sort();
+    let files: Vec<Value> = paths
+        .iter()
+        .map(|path| toml::from_str(&text(path)).unwrap())
+        .collect();
+    let read: Vec<Value> =
+        serde_json::from_str(&text(&Path::new(folder).join("lessons.json"))).unwrap();
+    assert_eq!(read, files, "run the example `lessons` of babble_lab");
 }
 
 #[test]

@@ -12,24 +12,22 @@ use crate::command::{Answer, Case};
 use crate::history::{Event, Happened};
 use crate::setup::Setup;
 
-/// What must have happened.
+/// What must have happened; numbers are those of the first agent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Kind {
-    /// An agent babbled; the number is how many babbles it has learnt from.
+    /// The agent babbled; the number is how many babbles it has learnt from.
     Learnt,
     /// An episode began; no number.
     Began,
-    /// An agent's episode ended; no number.
+    /// The agent's episode ended; no number.
     Ended,
     /// All agents have played a case to its end; no number.
     Played,
-    /// A test of at least 40 cases; the number is an agent's share of successes.
+    /// A test of at least 40 cases; the number is the agent's share of successes.
     Tested,
-    /// Neurons were silenced; the number is how many of an agent's are silent.
+    /// Neurons were silenced; the number is how many of the agent's are silent.
     Lesioned,
-    /// The setup changed; no number.
-    Changed,
 }
 
 /// Fewer test cases than these tell too little.
@@ -40,9 +38,6 @@ const FEWEST_CASES: u64 = 40;
 #[serde(deny_unknown_fields)]
 pub(crate) struct Step {
     what: Kind,
-    /// Whose.
-    #[serde(default)]
-    agent: usize,
     #[serde(default)]
     at_least: Option<f64>,
     #[serde(default)]
@@ -53,9 +48,6 @@ pub(crate) struct Step {
     /// The part in which the case differs from that of the episode before, and which alone does.
     #[serde(default)]
     moved: Option<String>,
-    /// Parts of the episode's case.
-    #[serde(default)]
-    case: BTreeMap<String, Wanted>,
     /// Values of the setup, by JSON pointer.
     #[serde(default)]
     setup: BTreeMap<String, Wanted>,
@@ -151,19 +143,17 @@ impl Step {
         self.at_least.is_none_or(|least| number >= least)
             && self.at_most.is_none_or(|most| number <= most)
             && self.setup.iter().all(holds)
-            && self.case_is(moment)
+            && self.moved.as_ref().is_none_or(|part| moved(part, moment))
     }
 
     /// The number of an event of this kind, 0 where it has none; none where it is of another kind.
     fn number(&self, moment: &Moment<'_>) -> Option<f64> {
         let event = moment.event;
         match (&event.what, self.what) {
-            (Happened::Babbled, Kind::Learnt) => event.learnt.get(self.agent).map(|&n| n as f64),
-            (Happened::Recalled { .. }, Kind::Began) | (Happened::Changed, Kind::Changed) => {
-                Some(0.0)
-            }
+            (Happened::Babbled, Kind::Learnt) => event.learnt.first().map(|&n| n as f64),
+            (Happened::Recalled { .. }, Kind::Began) => Some(0.0),
             (Happened::Stepped { ended, .. }, Kind::Ended) => {
-                let outcome = ended.get(self.agent)?.as_ref()?;
+                let outcome = ended.first()?.as_ref()?;
                 let wanted = self.outcome.as_ref().is_none_or(|wanted| wanted == outcome);
                 wanted.then_some(0.0)
             }
@@ -177,25 +167,12 @@ impl Step {
                 },
                 Kind::Tested,
             ) if *cases >= FEWEST_CASES => {
-                let successes = *successes.get(self.agent)?;
+                let successes = *successes.first()?;
                 Some(successes as f64 / *cases as f64)
             }
-            (Happened::Lesioned { agent, silenced }, Kind::Lesioned) if *agent == self.agent => {
-                Some(*silenced as f64)
-            }
+            (Happened::Lesioned { agent: 0, silenced }, Kind::Lesioned) => Some(*silenced as f64),
             _ => None,
         }
-    }
-
-    fn case_is(&self, moment: &Moment<'_>) -> bool {
-        let Some(case) = moment.case else {
-            return self.case.is_empty() && self.moved.is_none();
-        };
-        let holds = |(part, wanted): (&String, &Wanted)| {
-            let value = case.get(part).map(serde_json::to_value);
-            wanted.is(value.and_then(Result::ok).as_ref())
-        };
-        self.case.iter().all(holds) && self.moved.as_ref().is_none_or(|part| moved(part, moment))
     }
 }
 

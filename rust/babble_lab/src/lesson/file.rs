@@ -1,4 +1,4 @@
-//! Lessons as files: TOML, whose unknown fields are errors.
+//! Lessons as they stand in their files, whose unknown fields are errors.
 
 use serde::Deserialize;
 use serde_json::{Map, Value};
@@ -68,14 +68,11 @@ struct QuestionFile {
 }
 
 impl LessonFile {
-    pub(super) fn read(text: &str) -> Result<Self, String> {
-        let file: Self = toml::from_str(text).map_err(|error| error.to_string())?;
-        let answered = |question: &QuestionFile| match &question.choices {
-            Some(choices) => choices.len() > 1 && question.between.is_none(),
-            None => question.between.is_some(),
-        };
-        match file.questions.iter().find(|question| !answered(question)) {
-            None => Ok(file),
+    pub(super) fn read_all(text: &str) -> Result<Vec<Self>, String> {
+        let files: Vec<Self> = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        let questions = files.iter().flat_map(|file| &file.questions);
+        match questions.clone().find(|question| !question.has_answer()) {
+            None => Ok(files),
             Some(question) => Err(format!(
                 "question {:?} needs either two choices or more, or between",
                 question.id
@@ -138,6 +135,13 @@ impl SetupFile {
 }
 
 impl QuestionFile {
+    fn has_answer(&self) -> bool {
+        match &self.choices {
+            Some(choices) => choices.len() > 1 && self.between.is_none(),
+            None => self.between.is_some(),
+        }
+    }
+
     fn question(self) -> Question {
         let mut choices = self.choices;
         let right = match (&choices, self.between) {

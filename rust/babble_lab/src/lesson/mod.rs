@@ -1,7 +1,7 @@
 //! Guided lessons: texts, tasks that notice when they were done, questions with answers.
 //!
-//! A lesson is a file of `lessons/`. Its checks are data, and they read what happened in a session alone, so the
-//! page and whoever runs a record again agree.
+//! A lesson is a TOML file of `lessons/`. Its checks are data, and they read what happened in a session alone, so
+//! the page and whoever runs a record again agree.
 
 mod check;
 mod file;
@@ -16,26 +16,14 @@ use crate::setup::Setup;
 use check::Step;
 use file::LessonFile;
 
-/// The files, in the order of the lessons.
-const FILES: [&str; 9] = [
-    include_str!("../../lessons/1-equilibrium.toml"),
-    include_str!("../../lessons/2-eye.toml"),
-    include_str!("../../lessons/3-population-codes.toml"),
-    include_str!("../../lessons/4-pattern-generators.toml"),
-    include_str!("../../lessons/5-hebb.toml"),
-    include_str!("../../lessons/6-why-reaching-fails.toml"),
-    include_str!("../../lessons/7-reflex.toml"),
-    include_str!("../../lessons/8-chain.toml"),
-    include_str!("../../lessons/9-hebb-and-ppo.toml"),
-];
+/// The files of `lessons/` in one: `examples/lessons.rs` makes it.
+const FILES: &str = include_str!("../../lessons/lessons.json");
 
 static LESSONS: LazyLock<Vec<Lesson>> = LazyLock::new(|| {
-    let read = |(i, text): (usize, &&str)| {
-        LessonFile::read(text)
-            .unwrap_or_else(|problem| panic!("lesson {} of this build is broken: {problem}", i + 1))
-            .lesson(i + 1)
-    };
-    FILES.iter().enumerate().map(read).collect()
+    let files = LessonFile::read_all(FILES)
+        .unwrap_or_else(|problem| panic!("the lessons of this build are broken: {problem}"));
+    let numbered = files.into_iter().zip(1..);
+    numbered.map(|(file, number)| file.lesson(number)).collect()
 });
 
 /// A lesson.

@@ -81,11 +81,11 @@ wasm: ## Build the core crates for WebAssembly, and compare the golden trajector
 	node .ci/wasm.mjs target/wasm32-unknown-unknown/release/babble_golden.wasm
 
 # simd128 is in every browser since 2021; learning is 2.5 to 3 times as fast with it.
-WASM := target/lab/wasm32-unknown-unknown/release/babble_wasm.wasm
+WASM := target/lab/wasm32-unknown-unknown/lab/babble_wasm.wasm
 lab-engine: ## Compile the lab's engine for WebAssembly into lab/src/engine/wasm
-	RUSTFLAGS='-C target-feature=+simd128' cargo build --release --target wasm32-unknown-unknown \
+	RUSTFLAGS='-C target-feature=+simd128' cargo build --profile lab --target wasm32-unknown-unknown \
 		--target-dir target/lab -p babble_wasm
-	cargo run --quiet --release -p babble_bindgen -- $(WASM) lab/src/engine/wasm
+	cargo run --quiet -p babble_bindgen -- $(WASM) lab/src/engine/wasm
 	mkdir -p lab/public/policies
 	cp gym_babble/lab/policies/*.safetensors lab/public/policies/
 

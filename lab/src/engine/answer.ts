@@ -46,6 +46,7 @@ const CLOSED: Fault = { kind: "ConfigError", field: null, problem: "no session i
 /** The engine in this thread. */
 export class LocalEngine implements Engine {
   private open_: wasm.Session | null = null;
+  private readonly policies = new wasm.Policies();
 
   private get session(): wasm.Session {
     if (this.open_ === null) throw JSON.stringify(CLOSED);
@@ -65,7 +66,7 @@ export class LocalEngine implements Engine {
   }
 
   async open(setup: Setup): Promise<State> {
-    const session = new wasm.Session(JSON.stringify(setup));
+    const session = new wasm.Session(JSON.stringify(setup), this.policies);
     this.open_?.free();
     this.open_ = session;
     return this.state();
@@ -117,8 +118,9 @@ export class LocalEngine implements Engine {
     return JSON.parse(this.session.progress(lesson));
   }
 
-  async addPolicy(name: string): Promise<void> {
-    throw JSON.stringify({ ...CLOSED, field: "policy", problem: `${name}: policies are not read yet` });
+  async addPolicy(name: string, bytes: Uint8Array): Promise<void> {
+    this.policies.add(name, bytes);
+    this.open_?.know(this.policies);
   }
 
   async saveAgent(agent: number): Promise<Uint8Array> {

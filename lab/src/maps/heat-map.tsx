@@ -1,5 +1,5 @@
 /** A map of neurons in colours, to look at by pointer and keyboard. */
-import { useEffect, useMemo, useRef, useState } from "preact/hooks";
+import { useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { MapActivity } from "../engine/contract";
 import { ACTIVITY, type ColourTable, gradient } from "./colours";
 import { indices, type Layout, layoutOf } from "./layout";
@@ -34,7 +34,8 @@ export function HeatMap(props: HeatMapProps) {
   const layout = useMemo(() => layoutOf(map.shape, props.fromTop ?? false), [shape, props.fromTop]);
   const scale = layout.rows * layout.columns > 4096 ? 4 : PIXELS;
 
-  useEffect(() => {
+  // At once, so that what waits for the view also waits for its painting.
+  useLayoutEffect(() => {
     const rings: [number, string][] = [];
     if (props.marked != null) rings.push([props.marked, "#ffffff"]);
     if (cursor !== null) rings.push([cursor, "#ff9d00"]);

@@ -9,7 +9,8 @@ export interface Layout {
   /** Neurons of one picture among those beside each other, for lines between them; 0 for none. */
   blockRows: number;
   blockColumns: number;
-  /** The neuron at a place, rows from the top. */
+  /** Neurons row by row, rows from the top. */
+  order: Uint32Array;
   neuronAt(row: number, column: number): number;
   placeOf(neuron: number): { row: number; column: number };
 }
@@ -20,17 +21,19 @@ export function layoutOf(shape: number[], fromTop: boolean): Layout {
   const size = (axes: number[]) => lengths(axes).reduce((product, n) => product * n, 1);
   const [rows, columns] = [size(up), size(across)];
   const flipped = (row: number) => (fromTop ? row : rows - 1 - row);
+  const order = Uint32Array.from({ length: rows * columns }, (_, at) => {
+    const place: number[] = [];
+    spread(flipped(Math.floor(at / columns)), up, lengths(up), place);
+    spread(at % columns, across, lengths(across), place);
+    return place.reduce((neuron, index, axis) => neuron * shape[axis]! + index, 0);
+  });
   return {
     rows,
     columns,
     blockRows: up.length > 1 ? shape[up.at(-1)!]! : 0,
     blockColumns: across.length > 1 ? shape[across.at(-1)!]! : 0,
-    neuronAt(row, column) {
-      const at: number[] = [];
-      place(flipped(row), up, lengths(up), at);
-      place(column, across, lengths(across), at);
-      return at.reduce((neuron, index, axis) => neuron * shape[axis]! + index, 0);
-    },
+    order,
+    neuronAt: (row, column) => order[row * columns + column]!,
     placeOf(neuron) {
       const at = indices(neuron, shape);
       const along = (axes: number[]) => axes.reduce((index, axis) => index * shape[axis]! + at[axis]!, 0);
@@ -56,6 +59,7 @@ function axesOf(count: number): { up: number[]; across: number[] } {
   return { up: axes.filter((axis) => axis % 2 === 0), across: axes.filter((axis) => axis % 2 === 1) };
 }
 
-function place(index: number, axes: number[], lengths: number[], at: number[]): void {
+/** Writes the index along each of some axes to its place. */
+function spread(index: number, axes: number[], lengths: number[], at: number[]): void {
   for (const [k, i] of indices(index, lengths).entries()) at[axes[k]!] = i;
 }

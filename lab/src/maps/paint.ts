@@ -15,29 +15,26 @@ export interface Picture {
 
 export function paint(canvas: HTMLCanvasElement, picture: Picture, layout: Layout, scale: number): void {
   const context = canvas.getContext("2d", { willReadFrequently: true })!;
-  const { rows, columns } = layout;
-  const image = context.createImageData(columns * scale, rows * scale);
-  const words = new Uint32Array(image.data.buffer);
-  for (let row = 0; row < rows; row += 1) {
-    for (let column = 0; column < columns; column += 1) {
-      const word = wordOf(picture, layout.neuronAt(row, column));
-      for (let y = row * scale; y < (row + 1) * scale; y += 1) {
-        const from = (y * columns + column) * scale;
-        words.fill(word, from, from + scale);
-      }
-    }
-  }
-  context.putImageData(image, 0, 0);
+  context.imageSmoothingEnabled = false;
+  context.drawImage(coloured(picture, layout), 0, 0, canvas.width, canvas.height);
   drawBlocks(context, layout, scale);
   for (const neuron of picture.crossed) cross(context, layout.placeOf(neuron), scale);
   for (const [neuron, colour] of picture.rings) ring(context, layout.placeOf(neuron), scale, colour);
 }
 
-/** The colour of a neuron as a canvas keeps it on little-endian machines, which all browsers run on. */
-function wordOf(picture: Picture, neuron: number): number {
-  const { activity, low, high, colours } = picture;
-  const [r, g, b] = colourOf(activity[neuron]!, low, high, colours);
-  return (0xff000000 | (b << 16) | (g << 8) | r) >>> 0;
+/** One pixel for each neuron. */
+function coloured(
+  { activity, low, high, colours }: Picture,
+  { rows, columns, order }: Layout,
+): OffscreenCanvas {
+  const image = new ImageData(columns, rows);
+  for (let at = 0; at < order.length; at += 1) {
+    const [r, g, b] = colourOf(activity[order[at]!]!, low, high, colours);
+    image.data.set([r, g, b, 255], 4 * at);
+  }
+  const canvas = new OffscreenCanvas(columns, rows);
+  canvas.getContext("2d", { willReadFrequently: true })!.putImageData(image, 0, 0);
+  return canvas;
 }
 
 function drawBlocks(context: CanvasRenderingContext2D, layout: Layout, scale: number): void {

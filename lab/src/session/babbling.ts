@@ -1,14 +1,15 @@
 /** Babbling in slices, so that the page stays alive and can be stopped. */
 import type { State } from "../engine/contract";
 import type { Session } from "./session";
-import { Slices, type Work } from "./work";
+import { pause, Slices, type Work } from "./work";
 
 /** Test cases of a point of the learning curve, by task: a grasp takes longer to play. */
 export const TEST_CASES: Record<string, number> = { reach: 100, grasp: 40 };
 /** Tests without a better result, after which babbling "until it is good" ends. */
 export const PATIENCE = 4;
-/** How often the views follow while it babbles. */
+/** How often the views follow while it babbles: less often where drawing them takes long. */
 const SHOWN_EVERY_MS = 200;
+const SHARE_OF_SHOWING = 0.25;
 
 /** Babbles until each learning agent has learnt from so many more babbles. */
 export async function babble(session: Session, babbles: number): Promise<void> {
@@ -17,8 +18,8 @@ export async function babble(session: Session, babbles: number): Promise<void> {
     const done = await babbleSlices(session, work, babbles, 0);
     session.said.value = `Learnt from ${done.toLocaleString("en")} ${done === 1 ? "babble" : "babbles"}.`;
   } finally {
+    await session.showSlices();
     work.end();
-    await session.show();
   }
 }
 
@@ -30,7 +31,6 @@ export async function test(session: Session): Promise<void> {
     session.said.value = `Tested: ${shares(session.state.value)} of the cases succeeded.`;
   } finally {
     work.end();
-    await session.show();
   }
 }
 
@@ -50,8 +50,8 @@ export async function babbleUntilGood(session: Session, goal: number): Promise<v
     }
     session.said.value = verdict(work.stopped, best, goal);
   } finally {
+    await session.showSlices();
     work.end();
-    await session.show();
   }
 }
 
@@ -65,7 +65,7 @@ function verdict(stopped: boolean, best: number, goal: number): string {
 async function babbleSlices(session: Session, work: Work, babbles: number, before: number): Promise<number> {
   const slices = new Slices();
   let done = 0;
-  let shown = performance.now();
+  let showNext = performance.now() + SHOWN_EVERY_MS;
   while (done < babbles && !work.stopped) {
     const n = slices.next(babbles - done);
     const began = performance.now();
@@ -74,9 +74,11 @@ async function babbleSlices(session: Session, work: Work, babbles: number, befor
     slices.took(n, now - began);
     done += n;
     work.report(before + done);
-    if (now - shown >= SHOWN_EVERY_MS) {
-      await session.show();
-      shown = performance.now();
+    if (now >= showNext) {
+      await session.showSlices();
+      await pause(0); // for the page to be painted
+      const took = performance.now() - now;
+      showNext = now + Math.max(SHOWN_EVERY_MS, took / SHARE_OF_SHOWING);
     }
   }
   return before + done;
@@ -84,8 +86,7 @@ async function babbleSlices(session: Session, work: Work, babbles: number, befor
 
 async function testOnce(session: Session): Promise<number> {
   const n = TEST_CASES[session.task.value] ?? 40;
-  const { curve, agents } = await session.applySlice({ do: "test", n });
-  await session.show();
+  const { curve, agents } = await session.apply({ do: "test", n });
   const point = curve.at(-1)!;
   return Math.max(...point.successes.filter((_, place) => agents[place]!.learns).map((k) => k / point.cases));
 }

@@ -1,7 +1,7 @@
 /** Plays the episode on the stage at the chosen speed. */
 import type { EpisodeState } from "../engine/contract";
 import type { Session } from "./session";
-import { Slices } from "./work";
+import { pause, Slices } from "./work";
 
 /** Shortest time between two pictures of an episode. */
 const FRAME_MS = 33;
@@ -50,11 +50,6 @@ function stepsDue(speed: number, milliseconds: number): number {
 /** How long a slice should last: at least as long as a picture of it can be seen. */
 function frameMs(speed: number): number {
   return speed === Number.POSITIVE_INFINITY ? 0 : Math.max(FRAME_MS, CONTROL_MS / speed);
-}
-
-/** Also waits a moment where no time is left, so that the page is drawn. */
-function pause(milliseconds: number): Promise<void> {
-  return new Promise((wake) => setTimeout(wake, Math.max(0, milliseconds)));
 }
 
 function sayOutcome(session: Session): void {

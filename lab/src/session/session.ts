@@ -27,6 +27,7 @@ export class Session {
   readonly task = computed(() => this.taskOf(this.state.value.setup.env));
   readonly progress = computed(() => this.shown.value.progress);
   private work: Work | null = null;
+  private sliced: State | null = null;
 
   private constructor(
     readonly engine: Engine,
@@ -61,20 +62,33 @@ export class Session {
 
   /** Does a command, and shows what came of it. A fault is shown, and thrown on. */
   async apply(command: Command): Promise<State> {
-    await this.applySlice(command);
+    const state = await this.take(this.engine.apply(command));
     await this.show();
-    return this.state.value;
+    return state;
   }
 
-  /** As apply, without showing: for a slice of long work. */
-  async applySlice(command: Command, link: Partial<Link> = {}): Promise<State> {
-    if (command.do === "change") await addShippedPolicies(this.engine, command.setup);
-    return this.take(this.engine.apply(command), link);
+  /** A slice of long work: the page learns of it at the next call of `apply` or `showSlices`. */
+  async applySlice(command: Command): Promise<void> {
+    try {
+      this.sliced = await this.engine.apply(command);
+    } catch (error) {
+      this.complain(error);
+      throw error;
+    }
+  }
+
+  /** Shows what came of the slices so far. */
+  async showSlices(): Promise<State> {
+    if (this.sliced) await this.take(Promise.resolve(this.sliced));
+    this.sliced = null;
+    await this.show();
+    return this.state.value;
   }
 
   /** Goes on with another setup; the same one is no command. */
   async change(setup: Setup): Promise<State> {
     if (same(setup, this.state.value.setup)) return this.state.value;
+    await addShippedPolicies(this.engine, setup);
     return this.apply({ do: "change", setup });
   }
 
@@ -164,8 +178,10 @@ export class Session {
     this.linkFaults.value = faults.map(({ key, problem }) => `${key}: ${problem}`);
     this.stop();
     if (link.lesson !== (this.lesson.value?.id ?? null)) return this.open(link.setup, link);
-    if (same(link.setup, this.state.value.setup)) this.arrange(link);
-    else await this.applySlice({ do: "change", setup: link.setup }, link);
+    const { setup } = link;
+    await addShippedPolicies(this.engine, setup);
+    if (same(setup, this.state.value.setup)) this.arrange(link);
+    else await this.take(this.engine.apply({ do: "change", setup }), link);
     await this.show();
   }
 
@@ -197,6 +213,7 @@ export class Session {
   private async take(answer: Promise<State>, link: Partial<Link> = {}): Promise<State> {
     try {
       const state = await answer;
+      this.sliced = null;
       batch(() => {
         this.state.value = state;
         this.arrange(link);

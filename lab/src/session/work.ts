@@ -54,3 +54,8 @@ export class Slices {
     this.size = Math.min(Math.max(fitting, 1), 4 * n);
   }
 }
+
+/** Waits; a moment at least, so that the page is drawn. */
+export function pause(milliseconds: number): Promise<void> {
+  return new Promise((wake) => setTimeout(wake, Math.max(0, milliseconds)));
+}

@@ -1,6 +1,6 @@
 /** A picture of the eye on a canvas, with marks over it. */
 import type { ComponentChildren } from "preact";
-import { useEffect, useRef } from "preact/hooks";
+import { useLayoutEffect, useRef } from "preact/hooks";
 import { PICTURE } from "../session/shown";
 
 export function Picture(props: {
@@ -14,7 +14,7 @@ export function Picture(props: {
 }) {
   const { pixels, mark, square } = props;
   const canvas = useRef<HTMLCanvasElement>(null);
-  useEffect(() => {
+  useLayoutEffect(() => {
     if (pixels?.length !== 4 * PICTURE * PICTURE) return;
     const context = canvas.current!.getContext("2d", { willReadFrequently: true })!;
     const image = context.createImageData(PICTURE, PICTURE);

@@ -4,12 +4,13 @@ use std::iter;
 
 use babble_env::{Config, Executor, Task};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use crate::babbling::{Babble, Babbling};
 use crate::error::AgentError;
 use crate::network::Network;
 use crate::rule::RuleOfOnesOwn;
-use crate::tensors;
+use crate::tensors::{self, whole_config};
 
 /// Version of the files.
 const VERSION: u32 = 4;
@@ -80,6 +81,7 @@ struct Metadata<C, O> {
     /// Numbers of maps and rule.
     brain: C,
     /// Body and task that it babbled with.
+    #[serde(deserialize_with = "whole_config")]
     config: Config,
     /// Seed of its babbling.
     seed: u64,
@@ -299,9 +301,9 @@ impl<N: Network> Learner<N> {
             .collect();
         let (json, values) = tensors::read(N::KEY, bytes, &names)?;
         check_version(&json)?;
+        let fields: Value = serde_json::from_str(&json).map_err(|e| tensors::file(&e))?;
         let metadata: Metadata<N::Config, <N::Task as Babble>::Options> =
-            serde_path_to_error::deserialize(&mut serde_json::Deserializer::from_str(&json))
-                .map_err(|e| tensors::file(&e))?;
+            serde_path_to_error::deserialize(fields).map_err(|e| tensors::file(&e))?;
         metadata.check_counts(<N::Task as Babble>::RAREST)?;
         metadata.config.validate()?;
         let mut network = N::new(metadata.brain)?;

@@ -6,10 +6,11 @@ use babble_brain::association::dot;
 use babble_env::spec::Spec;
 use babble_env::{AnyTask, Config, Executor, Options, registry};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use crate::error::AgentError;
 use crate::policy::{Plan, Policy};
-use crate::tensors::{self, Shaped, Tensor};
+use crate::tensors::{self, Shaped, Tensor, whole_config};
 
 /// Version of the files.
 const VERSION: u32 = 1;
@@ -51,6 +52,7 @@ pub struct About {
     /// Options of the environment that it acts in, where they differ from the task's defaults.
     pub options: Options,
     /// Config of body and task.
+    #[serde(deserialize_with = "whole_config")]
     pub config: Config,
     /// Names of the senses in a flat observation, and how many numbers each has.
     pub senses: Vec<(String, usize)>,
@@ -109,9 +111,9 @@ impl PolicyNetwork {
             .flat_map(|i| [format!("{i}.weight"), format!("{i}.bias")])
             .collect();
         let (json, values) = tensors::read(Self::KEY, bytes, &names)?;
+        let fields: Value = serde_json::from_str(&json).map_err(|e| tensors::file(&e))?;
         let about: About =
-            serde_path_to_error::deserialize(&mut serde_json::Deserializer::from_str(&json))
-                .map_err(|e| tensors::file(&e))?;
+            serde_path_to_error::deserialize(fields).map_err(|e| tensors::file(&e))?;
         if about.version != VERSION {
             return Err(refused(format!(
                 "version {} is not {VERSION}",

@@ -2,9 +2,12 @@
 //! with a checksum of all the rest. Nothing in such a file is code.
 
 use babble_brain::Association;
+use babble_env::Config;
 use safetensors::tensor::{Dtype, TensorView};
 use safetensors::{SafeTensors, serialize};
 use serde::Serialize;
+use serde::de::{Deserialize, Deserializer, Error};
+use serde_json::Value;
 use xxhash_rust::xxh3::Xxh3;
 
 use crate::error::AgentError;
@@ -163,6 +166,11 @@ fn values(tensors: &SafeTensors<'_>, name: &str) -> Result<Shaped, AgentError> {
     let four = |bytes: &[u8]| f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
     let values = tensor.data().chunks_exact(4).map(four).collect();
     Ok((tensor.shape().to_vec(), values))
+}
+
+/// The config in a file. The code that reads a config is there once, which a browser downloads.
+pub(crate) fn whole_config<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Config, D::Error> {
+    Config::from_whole(Value::deserialize(deserializer)?).map_err(D::Error::custom)
 }
 
 /// An error of a file, from any other.

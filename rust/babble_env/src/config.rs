@@ -112,13 +112,20 @@ impl Config {
         value["noise"] = serde_json::to_value(base.noise)
             .map_err(|error| document::fault("document", &error))?;
         merge(&mut value, overrides, &mut Vec::new())?;
-        let config: Self =
-            serde_path_to_error::deserialize(value).map_err(|error| EnvError::Config {
-                field: error.path().to_string(),
-                problem: error.inner().to_string(),
-            })?;
+        let config = Self::from_whole(value)?;
         config.validate()?;
         Ok(config)
+    }
+
+    /// A whole document, as [`Self::to_json`] writes it; its numbers are not checked.
+    ///
+    /// # Errors
+    /// [`EnvError::Config`] with the path of the field that is unknown, missing or of a wrong type.
+    pub fn from_whole(value: Value) -> Result<Self, EnvError> {
+        serde_path_to_error::deserialize(value).map_err(|error| EnvError::Config {
+            field: error.path().to_string(),
+            problem: error.inner().to_string(),
+        })
     }
 
     /// Checks every field.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use babble_agent::erased::{self, AnyLearner};
-use babble_agent::{AgentError, Plan, Policy, Random, Rule, predict, reference};
+use babble_agent::{AgentError, Plan, Policy, PolicyNetwork, Random, Rule, predict, reference};
 use babble_brain::Association;
 use babble_env::batch::Record;
 use babble_env::{AnyTask, Executor};
@@ -16,6 +16,7 @@ use crate::expression::RuleExpression;
 use crate::fault::Fault;
 use crate::hash::{self, Hash};
 use crate::making;
+use crate::policies::Policies;
 use crate::setup::{AgentSetup, Setup};
 use crate::state::{AgentState, Outcomes};
 
@@ -38,6 +39,8 @@ pub(crate) enum Mind {
     Learner(LearnerMind),
     /// An agent that needs no learning, by name, and how many random choices it has made.
     Reference { name: &'static str, choices: u64 },
+    /// A network that was trained elsewhere.
+    Policy(Arc<PolicyNetwork>),
 }
 
 /// A learner; those of snapshots are shared.
@@ -61,6 +64,7 @@ impl Agent {
         setup: &Setup,
         task: &Arc<dyn AnyTask>,
         place: usize,
+        policies: &Policies,
     ) -> Result<Self, Fault> {
         let mind = match agent {
             AgentSetup::Hebb {
@@ -80,10 +84,7 @@ impl Agent {
             AgentSetup::Random {} => Mind::reference("random"),
             AgentSetup::Scripted {} => Mind::reference("scripted"),
             AgentSetup::Oracle {} => Mind::reference("oracle"),
-            AgentSetup::Policy { name } => {
-                let problem = format!("there is no policy {name:?}: add it first");
-                return Err(Fault::config(&format!("agents[{place}].name"), problem));
-            }
+            AgentSetup::Policy { name } => Mind::Policy(policies.get(name, setup)?),
         };
         let mut made = Self {
             setup: agent.clone(),
@@ -99,7 +100,7 @@ impl Agent {
     pub(crate) fn learner(&self) -> Option<&LearnerMind> {
         match &self.mind {
             Mind::Learner(mind) => Some(mind),
-            Mind::Reference { .. } => None,
+            Mind::Reference { .. } | Mind::Policy(_) => None,
         }
     }
 
@@ -128,6 +129,7 @@ impl Agent {
                 *choices = random.choices();
                 Ok(done)
             }
+            Mind::Policy(network) => Ok(act(&**network)?),
         }
     }
 
@@ -184,6 +186,7 @@ impl Agent {
         match &self.mind {
             Mind::Learner(mind) => hash.add(&mind.hash.to_le_bytes()),
             Mind::Reference { choices, .. } => hash.add(&choices.to_le_bytes()),
+            Mind::Policy(_) => {}
         }
         for (outcome, count) in &self.recalls {
             hash.add(outcome.as_bytes());

@@ -6,6 +6,7 @@ use babble_brain::BrainError;
 use babble_env::EnvError;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 /// What is wrong.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
@@ -39,19 +40,14 @@ impl Fault {
         Self::new("RecordError", Some(field), problem)
     }
 
-    /// A value from JSON, or what is wrong with it and in which field.
+    /// A value from JSON, or what is wrong with it and where.
     ///
     /// # Errors
-    /// A fault that names the field.
+    /// A fault that names the line and the column.
     pub fn reading<T: DeserializeOwned>(text: &str) -> Result<T, Self> {
-        let mut json = serde_json::Deserializer::from_str(text);
-        let read = serde_path_to_error::deserialize(&mut json).map_err(|error| {
-            let path = error.path().to_string();
-            Self::config(&path, error.inner().to_string())
-        })?;
-        json.end()
-            .map_err(|error| Self::config("document", error.to_string()))?;
-        Ok(read)
+        // By way of a value, as all else is read that comes as JSON: code for one source is enough.
+        let value: Value = serde_json::from_str(text)?;
+        serde_json::from_value(value).map_err(|error| Self::config("document", error.to_string()))
     }
 }
 

@@ -13,6 +13,7 @@ use crate::fault::Fault;
 use crate::hash::Hash;
 use crate::history::{Event, Happened};
 use crate::making;
+use crate::policies::Policies;
 use crate::setup::{AgentSetup, Setup};
 use crate::snapshot::{Snapshot, Undo};
 use crate::stage::Stage;
@@ -26,6 +27,7 @@ pub struct Lab {
     pub(crate) task: Arc<dyn AnyTask>,
     pub(crate) agents: Vec<Agent>,
     pub(crate) stage: Stage,
+    pub(crate) policies: Policies,
     pub(crate) begun_with: Arc<Setup>,
     pub(crate) commands: Vec<Command>,
     /// Hashes of the agents that came from files.
@@ -38,20 +40,22 @@ pub struct Lab {
 }
 
 impl Lab {
-    /// A session that begins with a setup; `executor` does the work.
+    /// A session that begins with a setup, whose agents may be some of the policies; `executor` does the
+    /// work.
     ///
     /// # Errors
     /// A [`Fault`] that names the field of the setup.
-    pub fn open(setup: Setup, executor: Executor) -> Result<Self, Fault> {
+    pub fn open(setup: Setup, policies: Policies, executor: Executor) -> Result<Self, Fault> {
         setup.check()?;
         let setup = Arc::new(setup);
         let task = making::task(&setup, &Map::new())?;
         let each = setup.agents.iter().enumerate();
-        let agents = each.map(|(i, agent)| Agent::new(agent, &setup, &task, i));
+        let agents = each.map(|(i, agent)| Agent::new(agent, &setup, &task, i, &policies));
         Ok(Self {
             agents: agents.collect::<Result<_, _>>()?,
             stage: Stage::new(&task, setup.agents.len(), setup.seed)?,
             task,
+            policies,
             begun_with: Arc::clone(&setup),
             setup,
             commands: Vec::new(),
@@ -87,15 +91,19 @@ impl Lab {
             .commands
             .last_mut()
             .is_some_and(|last| last.merge(command));
-        match self.history.last_mut().filter(|_| merged) {
-            Some(earlier) => earlier.merge(event),
-            None => {
-                self.commands.push(command.clone());
-                self.history.push(event);
-                self.undo.push(before);
-            }
+        if let Some(earlier) = self.history.last_mut().filter(|_| merged) {
+            earlier.merge(event);
+        } else {
+            self.commands.push(command.clone());
+            self.history.push(event);
+            self.undo.push(before);
         }
         Ok(())
+    }
+
+    /// Knows these policies from now on, which a change of the setup can name.
+    pub fn know(&mut self, policies: Policies) {
+        self.policies = policies;
     }
 
     /// Takes the last command back, as if it had never been.
@@ -191,9 +199,8 @@ impl Lab {
         let mut setup = (*self.setup).clone();
         let task = learner.task();
         if task_name(&setup)? != task {
-            setup.env = babble_env::registry::task(task)?.environments[0]
-                .id
-                .to_owned();
+            let first = &babble_env::registry::task(task)?.environments[0];
+            first.id.clone_into(&mut setup.env);
             setup.options = Map::new();
         }
         let config = learner.config();
@@ -356,7 +363,7 @@ impl Lab {
         for (i, agent) in setup.agents.iter().enumerate() {
             let before = self.agents.get(i).filter(|before| before.setup == *agent);
             agents.push(match before.filter(|_| same_seed && same_task) {
-                None => Agent::new(agent, setup, &task, i)?,
+                None => Agent::new(agent, setup, &task, i, &self.policies)?,
                 Some(before) => {
                     let mut kept = before.clone();
                     kept.move_to(&task)?;

@@ -1,11 +1,15 @@
 //! The record of a session as a file, which anybody can run again.
 
+use std::collections::BTreeMap;
+use std::iter;
+
 use babble_env::Executor;
 use serde::{Deserialize, Serialize};
 
 use crate::command::Command;
 use crate::fault::Fault;
 use crate::lab::Lab;
+use crate::policies::Policies;
 use crate::setup::Setup;
 
 /// Version of the file.
@@ -34,6 +38,9 @@ pub struct Record {
     /// Hashes of agents from files that it begins with: such a session cannot be run again from here.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub loaded: Vec<String>,
+    /// Hashes of the files of policies that it names.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub policies: BTreeMap<String, String>,
     /// What was done.
     pub commands: Vec<Command>,
     /// Hash of the state at the end.
@@ -93,23 +100,44 @@ impl Lab {
             name: name.to_owned(),
             setup: (*self.begun_with).clone(),
             loaded: self.loaded.clone(),
+            policies: self.policies.hashes(self.setups()),
             commands: self.commands.clone(),
             hash: self.hash()?,
         })
     }
 }
 
+impl Lab {
+    /// The setups that the record has.
+    fn setups(&self) -> impl Iterator<Item = &Setup> {
+        setups(&self.begun_with, &self.commands)
+    }
+}
+
+fn setups<'a>(first: &'a Setup, commands: &'a [Command]) -> impl Iterator<Item = &'a Setup> {
+    let changed = commands.iter().filter_map(|command| match command {
+        Command::Change { setup } => Some(setup),
+        _ => None,
+    });
+    iter::once(first).chain(changed)
+}
+
 /// The session of a record, run again. Whether it is the same shows in its hash.
 ///
 /// # Errors
 /// A [`Fault`] for a setup or a command that cannot be, naming its place; for a session that would take
-/// too long; or for one that began with agents from files.
-pub fn replay(record: &Record, executor: Executor) -> Result<Lab, Fault> {
+/// too long; or for one that began with agents from files, or names other policies than these.
+pub fn replay(record: &Record, policies: Policies, executor: Executor) -> Result<Lab, Fault> {
     if !record.loaded.is_empty() {
         let problem = "it begins with an agent from a file, so it cannot be run again from here";
         return Err(Fault::record("loaded", problem));
     }
-    let mut lab = Lab::open(record.setup.clone(), executor)?;
+    let known = policies.hashes(setups(&record.setup, &record.commands));
+    if known != record.policies {
+        let problem = "it names a policy whose file is not known here, so it cannot be run again";
+        return Err(Fault::record("policies", problem));
+    }
+    let mut lab = Lab::open(record.setup.clone(), policies, executor)?;
     for (i, command) in record.commands.iter().enumerate() {
         lab.apply(command).map_err(|fault| Fault {
             problem: format!("command {}: {}", i + 1, fault.problem),

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use babble_lab::lesson::{Lesson, lesson, lessons};
 use babble_lab::{Command, Lab, MapName, Setup};
-use common::{babble, executor, recall, step, test};
+use common::{babble, executor, policies, recall, step, test};
 use serde_json::{Value, json};
 
 /// Steps that are enough for any episode.
@@ -23,7 +23,7 @@ struct Student {
 impl Student {
     fn of(id: &str) -> Self {
         let lesson = lesson(id).unwrap();
-        let lab = Lab::open(lesson.setup.clone(), executor()).unwrap();
+        let lab = Lab::open(lesson.setup.clone(), policies(), executor()).unwrap();
         Self { lesson, lab }
     }
 

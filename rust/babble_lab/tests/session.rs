@@ -3,7 +3,7 @@
 
 mod common;
 
-use babble_lab::{AgentSetup, Answer, Command, Happened, MapName, replay};
+use babble_lab::{AgentSetup, Answer, Command, Happened, MapName, Policies, replay};
 use common::{GRASP, REACH, babble, lab, recall, setup, step, test};
 use serde_json::json;
 
@@ -84,13 +84,16 @@ fn a_record_run_again_gives_its_hash() {
             .to_json()
             .unwrap();
         let record = babble_lab::Record::from_json(&text).unwrap();
-        let again = replay(&record, common::executor()).unwrap();
+        let again = replay(&record, Policies::default(), common::executor()).unwrap();
         assert_eq!(again.hash().unwrap(), record.hash, "{env}");
         assert_eq!(again.history(), lab.history());
         let mut forged = record.clone();
         forged.commands[0] = babble(5);
         assert_ne!(
-            replay(&forged, common::executor()).unwrap().hash().unwrap(),
+            replay(&forged, Policies::default(), common::executor())
+                .unwrap()
+                .hash()
+                .unwrap(),
             record.hash
         );
     }
@@ -220,7 +223,7 @@ fn an_agent_from_a_file_goes_on_with_the_same_bits() {
     assert_eq!(other.save_agent(0).unwrap(), first.save_agent(0).unwrap());
     let record = other.record(None, "").unwrap();
     assert_eq!(
-        replay(&record, common::executor())
+        replay(&record, Policies::default(), common::executor())
             .unwrap_err()
             .field
             .as_deref(),
@@ -239,7 +242,9 @@ fn a_rule_of_ones_own_learns_in_slices_as_at_once() {
             rule: Some(rule),
         };
         let mut lab = lab(setup);
-        n.iter().for_each(|&n| lab.apply(&babble(n)).unwrap());
+        for &n in n {
+            lab.apply(&babble(n)).unwrap();
+        }
         lab
     };
     assert_eq!(own(&[1, 150, 49]).hash(), own(&[200]).hash());
@@ -254,7 +259,49 @@ fn a_rule_that_makes_no_sense_is_named_with_its_place() {
         brain: serde_json::Map::new(),
         rule: Some("eta * gmean".to_owned()),
     };
-    let fault = babble_lab::Lab::open(wrong, common::executor()).unwrap_err();
+    let fault = babble_lab::Lab::open(wrong, Policies::default(), common::executor()).unwrap_err();
     assert_eq!(fault.field.as_deref(), Some("agents[0].rule"));
     assert!(fault.problem.contains("g_mean"), "{}", fault.problem);
+}
+
+#[test]
+fn a_policy_acts_beside_a_learner_and_its_file_is_named_in_the_record() {
+    for (env, name) in [(REACH, "reach"), (GRASP, "grasp")] {
+        let mut beside = setup(env, &["paper"]);
+        beside.agents.push(AgentSetup::Policy {
+            name: name.to_owned(),
+        });
+        let mut lab = lab(beside);
+        for command in [babble(2), test(10), recall(), step(1_000)] {
+            lab.apply(&command).unwrap();
+        }
+        let state = lab.state().unwrap();
+        assert!(state.curve[0].successes[1] >= 8, "{env}: {:?}", state.curve);
+        let record = lab.record(None, "").unwrap();
+        let again = replay(&record, common::policies(), common::executor()).unwrap();
+        assert_eq!(again.hash().unwrap(), record.hash);
+        let fault = replay(&record, Policies::default(), common::executor()).unwrap_err();
+        assert_eq!(fault.field.as_deref(), Some("policies"));
+    }
+}
+
+#[test]
+fn a_policy_of_another_task_or_control_is_refused() {
+    let with = |env: &str, name: &str| {
+        let mut setup = setup(env, &["paper"]);
+        setup.agents[0] = AgentSetup::Policy {
+            name: name.to_owned(),
+        };
+        setup
+    };
+    let mut other = with(REACH, "reach");
+    other.options = common::object(&json!({"control": "posture"}));
+    for (setup, field) in [
+        (with(REACH, "grasp"), "name"),
+        (with(REACH, "nobody"), "name"),
+        (other, "options.control"),
+    ] {
+        let fault = babble_lab::Lab::open(setup, common::policies(), common::executor());
+        assert_eq!(fault.unwrap_err().field.as_deref(), Some(field));
+    }
 }

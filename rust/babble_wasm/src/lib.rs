@@ -53,6 +53,29 @@ pub fn lessons() -> Reply<String> {
     json(&babble_lab::lessons())
 }
 
+/// Networks that were trained elsewhere, by name.
+#[wasm_bindgen]
+#[derive(Debug, Default)]
+pub struct Policies(babble_lab::Policies);
+
+#[wasm_bindgen]
+impl Policies {
+    /// None yet.
+    #[wasm_bindgen(constructor)]
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds the network in a file's bytes.
+    ///
+    /// # Errors
+    /// A fault.
+    pub fn add(&mut self, name: &str, bytes: &[u8]) -> Reply<()> {
+        self.0.add(name, bytes).map_err(thrown)
+    }
+}
+
 /// A session.
 #[wasm_bindgen]
 #[derive(Debug)]
@@ -61,18 +84,25 @@ pub struct Session(Lab);
 #[wasm_bindgen]
 #[expect(clippy::missing_errors_doc, reason = "a fault as JSON, in all of them")]
 impl Session {
-    /// A session that begins with a setup, given as JSON.
+    /// A session that begins with a setup, given as JSON, whose agents may be some of the policies.
     #[wasm_bindgen(constructor)]
-    pub fn new(setup: &str) -> Reply<Self> {
+    pub fn new(setup: &str, policies: &Policies) -> Reply<Self> {
         let setup = Setup::from_json(setup).map_err(thrown)?;
         let executor = Executor::new(1).map_err(|error| thrown(error.into()))?;
-        Ok(Self(Lab::open(setup, executor).map_err(thrown)?))
+        Ok(Self(
+            Lab::open(setup, policies.0.clone(), executor).map_err(thrown)?,
+        ))
     }
 
     /// Does what a command says, given as JSON.
     pub fn apply(&mut self, command: &str) -> Reply<()> {
         let command = Command::from_json(command).map_err(thrown)?;
         self.0.apply(&command).map_err(thrown)
+    }
+
+    /// Knows these policies from now on.
+    pub fn know(&mut self, policies: &Policies) {
+        self.0.know(policies.0.clone());
     }
 
     /// Takes the last command back.
@@ -180,7 +210,7 @@ fn map_name(name: &str) -> Reply<MapName> {
         .map_err(|error| thrown(Fault::config("map", error.to_string())))
 }
 
-fn json(value: &impl Serialize) -> Reply<String> {
+fn json(value: &(impl Serialize + ?Sized)) -> Reply<String> {
     serde_json::to_string(value).map_err(|error| thrown(error.into()))
 }
 

@@ -69,7 +69,8 @@ struct QuestionFile {
 
 impl LessonFile {
     pub(super) fn read_all(text: &str) -> Result<Vec<Self>, String> {
-        let files: Vec<Self> = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        let value: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        let files: Vec<Self> = serde_json::from_value(value).map_err(|error| error.to_string())?;
         let questions = files.iter().flat_map(|file| &file.questions);
         match questions.clone().find(|question| !question.has_answer()) {
             None => Ok(files),

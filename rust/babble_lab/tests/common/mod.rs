@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test file uses some of it")]
 
 use babble_env::Executor;
-use babble_lab::{AgentSetup, Case, Command, Lab, Setup, default_setup};
+use babble_lab::{AgentSetup, Case, Command, Lab, Policies, Setup, default_setup};
 use serde_json::{Map, Value};
 
 pub(crate) const REACH: &str = "BabbleReach-v0";
@@ -12,8 +12,27 @@ pub(crate) fn executor() -> Executor {
     Executor::new(1).unwrap()
 }
 
+/// The policies that come with the package.
+pub(crate) fn policies() -> Policies {
+    let mut all = Policies::default();
+    let files = [
+        (
+            "reach",
+            include_bytes!("../../../../gym_babble/lab/policies/reach.safetensors").as_slice(),
+        ),
+        (
+            "grasp",
+            include_bytes!("../../../../gym_babble/lab/policies/grasp.safetensors"),
+        ),
+    ];
+    for (name, bytes) in files {
+        all.add(name, bytes).unwrap();
+    }
+    all
+}
+
 pub(crate) fn lab(setup: Setup) -> Lab {
-    Lab::open(setup, executor()).unwrap()
+    Lab::open(setup, policies(), executor()).unwrap()
 }
 
 /// The default setup with learners of these variants.

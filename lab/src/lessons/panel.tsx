@@ -25,7 +25,7 @@ export function LessonPanel({ session }: { session: Session }) {
         <Prose text={lesson.background} />
       </Part>
       <Part title="Key equation">
-        <p class="equation">{lesson.equation.text}</p>
+        <p class="equation">{inline(lesson.equation.text)}</p>
         <p>
           {lesson.equation.name}. {inline(lesson.equation.means)}.
         </p>

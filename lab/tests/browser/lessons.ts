@@ -1,4 +1,4 @@
-/** What a student does in each lesson, by the controls of the page: after each entry one more task is done. */
+/** What a student does in each lesson, by the controls of the page: an entry for each task. */
 import { expect, type Page } from "@playwright/test";
 import { button, run } from "./page";
 
@@ -29,7 +29,9 @@ const playUntil =
     await page.getByLabel("speed").selectOption("Infinity");
     for (let episodes = 0; episodes < 40; episodes++) {
       await next(page);
-      await run(page, "Play");
+      await expect(button(page, "One step")).toBeEnabled();
+      await button(page, "Play").click();
+      await expect(button(page, "One step")).toBeDisabled({ timeout: 60_000 });
       await expect(page.locator(".status")).toContainText("The episode ended");
       if (outcome.test((await page.locator(".status p").first().textContent())!)) return;
     }
@@ -52,7 +54,7 @@ const seen =
 const silenceHalf: Deed = async (page) => {
   await page.getByLabel(/brush: silence/).check();
   await page.getByLabel("brush radius").fill("5");
-  const map = page.getByRole("application", { name: /^Input/ });
+  const map = page.getByRole("application", { name: /^Input “/ });
   const box = (await map.boundingBox())!;
   await page.mouse.move(box.x + 0.2 * box.width, box.y + 2);
   await page.mouse.down();

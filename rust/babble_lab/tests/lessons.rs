@@ -403,3 +403,37 @@ fn chain() {
         ("mean", json!(0.2 + 0.5 * (0.8 - 0.2))),
     ]);
 }
+
+#[test]
+fn hebb_and_ppo() {
+    let mut student = Student::of("hebb-and-ppo");
+    student.learns(250);
+    let whole = student.tests(100);
+    student.has_done(1);
+    student.does(&recall());
+    student.does(&step(1));
+    student.has_done(1);
+    student.does(&step(TO_THE_END));
+    student.has_done(2);
+    student.sets("injury");
+    let injured = student.tests(100);
+    student.has_done(3);
+    student.learns(3_749);
+    student.tests(100);
+    student.has_done(3);
+    student.learns(1);
+    let recovered = student.tests(100);
+    student.has_done(4);
+    assert!(injured < recovered && recovered < whole);
+    student.answers(&[
+        ("times", json!(18)),
+        (
+            "why",
+            json!("Every legal movement is a right answer for the place where the hand came to be"),
+        ),
+        (
+            "price",
+            json!("How a whole movement runs: the pattern generators"),
+        ),
+    ]);
+}

@@ -41,10 +41,10 @@ function drawBlocks(context: CanvasRenderingContext2D, layout: Layout, scale: nu
   context.fillStyle = "rgb(255 255 255 / 55%)";
   const { rows, columns, blockRows, blockColumns } = layout;
   for (let c = blockColumns; blockColumns > 0 && c < columns; c += blockColumns) {
-    context.fillRect(c * scale, 0, 1, rows * scale);
+    context.fillRect(c * scale - 1, 0, 2, rows * scale);
   }
   for (let r = blockRows; blockRows > 0 && r < rows; r += blockRows) {
-    context.fillRect(0, r * scale, columns * scale, 1);
+    context.fillRect(0, r * scale - 1, columns * scale, 2);
   }
 }
 

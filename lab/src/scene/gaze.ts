@@ -1,6 +1,6 @@
 /** The line of sight, and the middle of the eye's field around it. */
 
-import { BufferGeometry, Float32BufferAttribute, LineBasicMaterial, LineSegments, Vector3 } from "three";
+import { BufferGeometry, LineBasicMaterial, LineSegments, Vector3 } from "three";
 
 import type { Scene } from "../engine/contract";
 
@@ -19,8 +19,8 @@ export class GazeLines {
     if (right !== undefined && down !== undefined) {
       points.push(...pyramid(eye, at, right, down, Math.tan(fieldOfView / 2)));
     }
-    const numbers = points.flatMap((point) => point.toArray());
-    this.lines.geometry.setAttribute("position", new Float32BufferAttribute(numbers, 3));
+    // It always has the same number of points.
+    this.lines.geometry.setFromPoints(points);
     this.lines.frustumCulled = false;
   }
 

@@ -3,13 +3,13 @@
 import {
   BufferGeometry,
   DirectionalLight,
-  Float32BufferAttribute,
   GridHelper,
   Group,
   HemisphereLight,
   Line,
   LineBasicMaterial,
   Scene as Stage,
+  Vector3,
   WebGLRenderer,
 } from "three";
 
@@ -140,7 +140,7 @@ class View implements SceneView {
   }
 
   setCase(given: Case, canDrag: boolean): void {
-    if (JSON.stringify(given) !== JSON.stringify(this.given)) this.beginTrails();
+    if (JSON.stringify(given) !== JSON.stringify(this.given)) this.clearTrails();
     this.given = given;
     const places = canDrag
       ? draggable(this.options.parts).filter(
@@ -165,15 +165,6 @@ class View implements SceneView {
   clearTrails(): void {
     for (const { trail } of this.players) trail.clear();
     this.draw();
-  }
-
-  /** Of another case: they begin where the fingertips are now. */
-  private beginTrails(): void {
-    for (const [agent, { trail }] of this.players.entries()) {
-      trail.clear();
-      const scene = this.scenes[agent];
-      if (scene !== undefined) trail.add(scene.fingertip);
-    }
   }
 
   setTheme(theme: Theme): void {
@@ -302,9 +293,8 @@ class View implements SceneView {
       const posture = postureAt(this.arm, to);
       const turned = posture?.[0] ?? 0;
       const elbow = [shoulder[0] + upper * Math.cos(turned), shoulder[1] + upper * Math.sin(turned)];
-      const points = posture === null ? [shoulder, to] : [shoulder, elbow, to];
-      const numbers = points.flatMap(([x = 0, y = 0]) => [x, y, 0]);
-      this.armLine.geometry.setAttribute("position", new Float32BufferAttribute(numbers, 3));
+      const points = [shoulder, posture === null ? shoulder : elbow, to];
+      this.armLine.geometry.setFromPoints(points.map(([x = 0, y = 0]) => new Vector3(x, y)));
       this.armLine.visible = true;
     } else {
       this.players[0]?.actor.preview(part, ...to);

@@ -34,7 +34,7 @@ export function AssociationView(props: {
       const { silenced } = session.state.value.agents[agent]!;
       session.said.value = `${neurons.length} neurons of “${plain(association[map].name)}” silenced; ${silenced} in all.`;
     });
-  const bound = weights?.activity.reduce((most, weight) => Math.max(most, Math.abs(weight)), 1e-6) ?? 1;
+  const bound = weights?.activity.reduce((most, weight) => Math.max(most, Math.abs(weight)), 0) || 1;
   return (
     <div class="association">
       <MapFigure

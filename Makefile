@@ -75,10 +75,11 @@ golden-native: ## Compare the golden trajectories in a release build for this ve
 	RUSTFLAGS='-C target-cpu=native' cargo run --release -p babble_golden --target "$$(rustc --print host-tuple)"
 
 # Features that need an operating system are off there: threads, clocks, rapier.
-wasm: ## Build the core crates for WebAssembly, and compare the golden trajectories there in Node
+wasm: lab-engine ## Build for WebAssembly, and compare the golden trajectories and lab sessions there in Node
 	cargo build --release --target wasm32-unknown-unknown --no-default-features \
 		$(foreach crate,brain eye body env agent golden,-p babble_$(crate))
 	node .ci/wasm.mjs target/wasm32-unknown-unknown/release/babble_golden.wasm
+	node .ci/lab.mjs lab/src/engine/wasm rust/babble_lab/tests/golden/*.json
 
 # simd128 is in every browser since 2021; learning is 2.5 to 3 times as fast with it.
 WASM := target/lab/wasm32-unknown-unknown/lab/babble_wasm.wasm

@@ -44,13 +44,15 @@ def check_wheel(path: Path) -> None:
         check_description(path, wheel.read(metadata))
     strays = [name for name in names if not name.startswith(("gym_babble/", "gym_babble-"))]
     kinds = ("*.py", "*.pyi", "*.css", "*.html", "*.js", "*.json", "*.toml", "*.yml", "py.typed")
-    kinds += ("*.safetensors", "*.safetensors.xz", "*.zip", "*.wasm", "*.svg", "*.png", "*.webmanifest")
+    kinds += ("*.safetensors", "*.safetensors.xz", "*.zip")
+    kinds += ("*.wasm", "*.svg", "*.png", "*.webmanifest")
     sources = {str(source) for kind in kinds for source in Path("gym_babble").rglob(kind)}
     missing = sources - set(names)
     if strays or missing or "-abi3-" not in path.name:
         sys.exit(f"error: {path}: strays {strays}, missing {sorted(missing)}")
     lab = "with" if PAGE in names else "without"
-    print(f"{path.name}: {len(names)} files, {path.stat().st_size / 1e6:.1f} MB, {lab} the lab's page")
+    size = path.stat().st_size / 1e6
+    print(f"{path.name}: {len(names)} files, {size:.1f} MB, {lab} the lab's page")
 
 
 def check_sdist(path: Path) -> None:

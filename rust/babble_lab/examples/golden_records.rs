@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use babble_env::Executor;
-use babble_lab::{Command, Lab, Policies, Setup};
+use babble_lab::{Command, Lab, Policies, Setup, ToJson};
 use serde_json::{Value, json};
 
 /// A learner of a variant, or one that learns by an expression.

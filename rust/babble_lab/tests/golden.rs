@@ -3,7 +3,7 @@
 
 mod common;
 
-use babble_lab::{Record, replay};
+use babble_lab::{Record, ToJson, replay};
 use common::{executor, policies};
 
 #[test]

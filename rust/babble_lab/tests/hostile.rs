@@ -3,7 +3,7 @@
 
 mod common;
 
-use babble_lab::{Command, Lab, Policies, Record, Setup, default_setup, registry, replay};
+use babble_lab::{Command, Lab, Policies, Record, Setup, ToJson, default_setup, registry, replay};
 use common::{GRASP, REACH, babble, executor, lab, object, policies, recall, setup, step};
 use proptest::prelude::*;
 use serde_json::{Map, Value, json};

@@ -26,7 +26,7 @@ EXTENSION_SOURCES := Cargo.toml Cargo.lock $(shell find rust -type f -not -name 
 	$(foreach folder,$(NOT_IN_EXTENSION),-not -path '*/$(folder)/*'))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo serve pictures test test-rust test-python slow soak fuzz golden-native wasm lab-engine lint lint-rust \
+.PHONY: help setup demo serve pictures test test-rust test-python slow soak fuzz golden-native wasm lab-engine lab-page lab lab-zip test-lab lint lint-rust \
 	lint-python lint-workflows deny bench microbench frameworks results constraints audit-export clean
 
 help: ## List the targets
@@ -59,8 +59,9 @@ test-rust:
 test-python: setup
 	$(BIN)/python -m pytest
 
-slow: setup ## Run the slow tests (six minutes)
+slow: setup lab-page ## Run the slow tests (ten minutes)
 	$(BIN)/python -m pytest -m slow
+	cd lab && npm run browser:long
 
 soak: setup ## Play both tasks at random, ten million steps each, in Rust and Python (45 minutes)
 	cargo test --release --test soak -- --ignored --nocapture
@@ -92,6 +93,29 @@ lab-engine: ## Compile the lab's engine for WebAssembly into lab/src/engine/wasm
 	cargo run --quiet -p babble_bindgen -- $(WASM) lab/src/engine/wasm
 	mkdir -p lab/public/policies
 	cp gym_babble/lab/policies/*.safetensors lab/public/policies/
+
+# npm writes this file last. What it installs is pinned with hashes in package-lock.json.
+LAB_PACKAGES := lab/node_modules/.package-lock.json
+$(LAB_PACKAGES): lab/package.json lab/package-lock.json
+	@command -v npm >/dev/null || { echo 'error: npm not found: install Node 20.19 or newer' >&2; exit 1; }
+	cd lab && npm ci --no-audit --no-fund
+	@touch $@
+
+lab-page: lab-engine $(LAB_PACKAGES) ## Build the lab's page into gym_babble/lab/page, where the package serves it
+	cd lab && npm run build
+	rm -rf gym_babble/lab/page
+	cp -R lab/dist gym_babble/lab/page
+
+lab: lab-page ## Build the lab and serve it on this machine, which needs Rust and Node, and no Python
+	cd lab && npx vite preview --host 127.0.0.1 --port 8742
+
+lab-zip: lab-page ## Pack the lab's page for a course page, into build/gym-babble-lab.zip
+	mkdir -p build && rm -f build/gym-babble-lab.zip
+	cd gym_babble/lab/page && $(PYTHON) -m zipfile -c $(CURDIR)/build/gym-babble-lab.zip *
+
+# CHROMIUM names a browser other than /usr/bin/chromium.
+test-lab: lab-page ## Check the page's types and lint, and run its tests, also in a browser
+	cd lab && npm run check && npm run browser
 
 lint: lint-rust lint-python lint-workflows deny ## Check formatting, lints and types of both languages, and what they depend on
 
@@ -144,7 +168,7 @@ audit-export: $(STAMPS)/dependencies ## Write the pinned Python dependencies wit
 clean: ## Remove what the other targets made
 	rm -rf $(VENV) $(FRAMEWORKS) $(PEERS) target report build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
 	find gym_babble tests bench -name __pycache__ -prune -exec rm -rf {} +
-	rm -f gym_babble/_core*.so
+	rm -rf gym_babble/_core*.so gym_babble/lab/page lab/node_modules lab/dist lab/src/engine/wasm lab/public/policies
 
 # constraints.txt names every package of the extras `all` and `dev`, so it is also the list to install.
 $(STAMPS)/dependencies: pyproject.toml constraints.txt

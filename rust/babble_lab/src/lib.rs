@@ -24,6 +24,7 @@ mod snapshot;
 mod stage;
 mod state;
 mod test_cases;
+mod verdict;
 
 pub use brain::{AssociationView, Brain, DecidedNumber, MapActivity};
 pub use command::{Answer, Case, Command, MapName};
@@ -39,3 +40,4 @@ pub use scene::{GazeLine, Scene, Shape, Sight, Solid};
 pub use setup::{AgentSetup, Setup};
 pub use sliders::Slider;
 pub use state::{AgentState, CurvePoint, EpisodeState, Outcomes, State};
+pub use verdict::{Verdict, verdict};

@@ -26,7 +26,7 @@ EXTENSION_SOURCES := Cargo.toml Cargo.lock $(shell find rust -type f -not -name 
 	$(foreach folder,$(NOT_IN_EXTENSION),-not -path '*/$(folder)/*'))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo serve pictures test test-rust test-python slow soak fuzz golden-native wasm lab-engine lint lint-rust \
+.PHONY: help setup demo serve pictures test test-rust test-python slow soak fuzz golden-native wasm lab-engine lab-page lab lab-zip test-lab lint lint-rust \
 	lint-python lint-workflows deny bench microbench frameworks results constraints audit-export clean
 
 help: ## List the targets
@@ -59,8 +59,9 @@ test-rust:
 test-python: setup
 	$(BIN)/python -m pytest
 
-slow: setup ## Run the slow tests (six minutes)
+slow: setup lab-page ## Run the slow tests (ten minutes)
 	$(BIN)/python -m pytest -m slow
+	cd lab && npm run browser:long
 
 soak: setup ## Play both tasks at random, ten million steps each, in Rust and Python (45 minutes)
 	cargo test --release --test soak -- --ignored --nocapture
@@ -75,19 +76,46 @@ golden-native: ## Compare the golden trajectories in a release build for this ve
 	RUSTFLAGS='-C target-cpu=native' cargo run --release -p babble_golden --target "$$(rustc --print host-tuple)"
 
 # Features that need an operating system are off there: threads, clocks, rapier.
-wasm: ## Build the core crates for WebAssembly, and compare the golden trajectories there in Node
+wasm: lab-engine ## Build for WebAssembly, and compare the golden trajectories and lab sessions there in Node
 	cargo build --release --target wasm32-unknown-unknown --no-default-features \
 		$(foreach crate,brain eye body env agent golden,-p babble_$(crate))
 	node .ci/wasm.mjs target/wasm32-unknown-unknown/release/babble_golden.wasm
+	node .ci/lab.mjs lab/src/engine/wasm rust/babble_lab/tests/golden/*.json
 
 # simd128 is in every browser since 2021; learning is 2.5 to 3 times as fast with it.
+# The limit keeps functions from being copied into each crate that calls them: 20 kB of gzip.
+WASM_FLAGS := -C target-feature=+simd128 -C llvm-args=-import-instr-limit=10 \
+	--remap-path-prefix=$(or $(CARGO_HOME),$(HOME)/.cargo)/registry/src=crates
 WASM := target/lab/wasm32-unknown-unknown/lab/babble_wasm.wasm
 lab-engine: ## Compile the lab's engine for WebAssembly into lab/src/engine/wasm
-	RUSTFLAGS='-C target-feature=+simd128' cargo build --profile lab --target wasm32-unknown-unknown \
+	RUSTFLAGS='$(WASM_FLAGS)' cargo build --profile lab --target wasm32-unknown-unknown \
 		--target-dir target/lab -p babble_wasm
 	cargo run --quiet -p babble_bindgen -- $(WASM) lab/src/engine/wasm
 	mkdir -p lab/public/policies
 	cp gym_babble/lab/policies/*.safetensors lab/public/policies/
+
+# npm writes this file last. What it installs is pinned with hashes in package-lock.json.
+LAB_PACKAGES := lab/node_modules/.package-lock.json
+$(LAB_PACKAGES): lab/package.json lab/package-lock.json
+	@command -v npm >/dev/null || { echo 'error: npm not found: install Node 20.19 or newer' >&2; exit 1; }
+	cd lab && npm ci --no-audit --no-fund
+	@touch $@
+
+lab-page: lab-engine $(LAB_PACKAGES) ## Build the lab's page into gym_babble/lab/page, where the package serves it
+	cd lab && npm run build
+	rm -rf gym_babble/lab/page
+	cp -R lab/dist gym_babble/lab/page
+
+lab: lab-page ## Build the lab and serve it on this machine, which needs Rust and Node, and no Python
+	cd lab && npx vite preview --host 127.0.0.1 --port 8742
+
+lab-zip: lab-page ## Pack the lab's page for a course page, into build/gym-babble-lab.zip
+	mkdir -p build && rm -f build/gym-babble-lab.zip
+	cd gym_babble/lab/page && $(PYTHON) -m zipfile -c $(CURDIR)/build/gym-babble-lab.zip *
+
+# CHROMIUM names a browser other than /usr/bin/chromium.
+test-lab: lab-page ## Check the page's types and lint, and run its tests, also in a browser
+	cd lab && npm run check && npm run browser
 
 lint: lint-rust lint-python lint-workflows deny ## Check formatting, lints and types of both languages, and what they depend on
 
@@ -140,7 +168,7 @@ audit-export: $(STAMPS)/dependencies ## Write the pinned Python dependencies wit
 clean: ## Remove what the other targets made
 	rm -rf $(VENV) $(FRAMEWORKS) $(PEERS) target report build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
 	find gym_babble tests bench -name __pycache__ -prune -exec rm -rf {} +
-	rm -f gym_babble/_core*.so
+	rm -rf gym_babble/_core*.so gym_babble/lab/page lab/node_modules lab/dist lab/src/engine/wasm lab/public/policies
 
 # constraints.txt names every package of the extras `all` and `dev`, so it is also the list to install.
 $(STAMPS)/dependencies: pyproject.toml constraints.txt

@@ -13,10 +13,16 @@ SDIST_NEEDS = {
     ".cargo/config.toml",  # The seed of the property tests.
     "Cargo.lock",
     "Cargo.toml",
+    "lab/package-lock.json",
+    "lab/src/engine/contract.ts",
     "LICENSE-MIT",
     "README.md",
     "pyproject.toml",
 }
+PAGE = "gym_babble/lab/page/index.html"
+"""The lab's page, if it was built before."""
+BUILT = (".so", ".pyd", ".pyc", ".wasm")
+"""How files end that something else was made into."""
 TOY = b"BabbleToy-" + b"v0"
 """The id of the task that only `make setup` builds."""
 
@@ -38,12 +44,15 @@ def check_wheel(path: Path) -> None:
         check_description(path, wheel.read(metadata))
     strays = [name for name in names if not name.startswith(("gym_babble/", "gym_babble-"))]
     kinds = ("*.py", "*.pyi", "*.css", "*.html", "*.js", "*.json", "*.toml", "*.yml", "py.typed")
-    kinds += ("*.safetensors.xz", "*.zip")
+    kinds += ("*.safetensors", "*.safetensors.xz", "*.zip")
+    kinds += ("*.wasm", "*.svg", "*.png", "*.webmanifest")
     sources = {str(source) for kind in kinds for source in Path("gym_babble").rglob(kind)}
     missing = sources - set(names)
     if strays or missing or "-abi3-" not in path.name:
         sys.exit(f"error: {path}: strays {strays}, missing {sorted(missing)}")
-    print(f"{path.name}: {len(names)} files, {path.stat().st_size / 1e6:.1f} MB")
+    lab = "with" if PAGE in names else "without"
+    size = path.stat().st_size / 1e6
+    print(f"{path.name}: {len(names)} files, {size:.1f} MB, {lab} the lab's page")
 
 
 def check_sdist(path: Path) -> None:
@@ -54,7 +63,7 @@ def check_sdist(path: Path) -> None:
         check_description(path, metadata.read())
     crates = {str(manifest) for manifest in Path("rust").glob("*/Cargo.toml")}
     missing = (SDIST_NEEDS | crates) - names
-    built = [name for name in names if name.endswith((".so", ".pyd", ".pyc"))]
+    built = [name for name in names if name.endswith(BUILT) or "node_modules" in name]
     if missing or built:
         sys.exit(f"error: {path}: missing {sorted(missing)}, built files {built}")
     print(f"{path.name}: {len(names)} files, {path.stat().st_size / 1e6:.1f} MB")

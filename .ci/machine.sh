@@ -71,6 +71,27 @@ ensure_rust_components() {
     return 1
 }
 
+# npm builds the lab's page, and a browser tests it. A Node that is too old counts as none.
+ensure_lab() {
+    command -v npm >/dev/null || debian_install nodejs npm || {
+        shout "no npm found, and it cannot be installed: going on without the lab"
+        return 1
+    }
+    node -e 'const [a, b] = process.versions.node.split(".").map(Number); process.exit(a > 20 || (a == 20 && b >= 19) ? 0 : 1)' || {
+        shout "the lab needs Node 20.19 or newer, and this is $(node --version): going on without the lab"
+        return 1
+    }
+}
+
+# Prints a browser for the lab's tests.
+chromium_of() {
+    local candidate
+    for candidate in "${CHROMIUM:-chromium}" chromium-browser google-chrome; do
+        command -v "$candidate" && return
+    done
+    debian_install chromium >&2 && command -v chromium
+}
+
 # Node runs what is compiled for WebAssembly.
 ensure_wasm() {
     command -v node >/dev/null || debian_install nodejs || {

@@ -11,6 +11,8 @@ tar -xzf "$packaging"/gym_babble-*.tar.gz -C "$packaging"
 # The same target directory, where the dependencies are compiled already; our own crates look newer
 # than what lies there, so that they are compiled from what the sdist holds.
 find "$packaging" -name '*.rs' -exec touch {} +
+# The page needs Node, so it is built before and only packed here; without it the wheel goes without the lab.
+if [[ -d gym_babble/lab/page ]]; then cp -R gym_babble/lab/page "$packaging"/gym_babble-*/gym_babble/lab/; fi
 (
     export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target}
     maturin=$PWD/.venv/bin/maturin dist=$PWD/dist

@@ -24,6 +24,7 @@ TESTS = (
     "test_config.py",
     "test_env.py",
     "test_env_reach.py",
+    "test_lab.py",
     "test_toy.py",
     "test_without_extras.py",
     "test_smoke.py",

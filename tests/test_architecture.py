@@ -32,7 +32,7 @@ MAY_KNOW = {
     "babble_server": {"babble_env"},
     "babble_py": {
         *("babble_brain", "babble_eye", "babble_body", "babble_env", "babble_agent"),
-        "babble_server",
+        *("babble_lab", "babble_server"),
     },
 }
 

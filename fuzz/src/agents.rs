@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use babble_agent::{AgentError, GraspNetwork, Learner, Network, ReachNetwork};
+use babble_agent::{AgentError, GraspNetwork, Learner, Network, PolicyNetwork, ReachNetwork};
 use safetensors::serialize;
 use safetensors::tensor::{Dtype, TensorView};
 use xxhash_rust::xxh3::Xxh3;
@@ -96,6 +96,15 @@ fn tried(bytes: &[u8]) -> bool {
             let postures = [decided.arm, decided.hand];
             assert!(postures.as_flattened().iter().all(|x| x.is_finite()));
             saved_again(&learner);
+            taken = true;
+        }
+        Err(error) => named(&error),
+    }
+    match PolicyNetwork::load(bytes) {
+        Ok(network) => {
+            let saved = network.save().expect("a file");
+            let again = PolicyNetwork::load(&saved).expect("a network that was saved is one");
+            assert_eq!(again.save(), Ok(saved));
             taken = true;
         }
         Err(error) => named(&error),

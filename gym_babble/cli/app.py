@@ -15,6 +15,7 @@ from gym_babble.cli.evaluate import evaluate
 from gym_babble.cli.export import export
 from gym_babble.cli.export_policy import export_policy
 from gym_babble.cli.info import info
+from gym_babble.cli.lab import lab
 from gym_babble.cli.list import list_environments
 from gym_babble.cli.record import record
 from gym_babble.cli.reproduce import reproduce
@@ -44,6 +45,7 @@ app.command(
 )(serve)
 app.add_typer(reproduce, name="reproduce")
 app.add_typer(study, name="study")
+app.add_typer(lab, name="lab")
 
 # The base class of typer's complaints about arguments; its name differs between versions.
 UsageError: Any = typer.BadParameter.__bases__[0]

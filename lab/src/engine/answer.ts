@@ -18,7 +18,7 @@ import * as wasm from "./wasm/engine.js";
 
 /** An association as the module gives it: activities come apart from it. */
 type Bare<Map> = Omit<Map, "activity">;
-type BareBrain = Omit<Brain, "associations"> & {
+export type BareBrain = Omit<Brain, "associations"> & {
   associations: (Omit<Brain["associations"][number], "input" | "output"> & {
     input: Bare<MapActivity>;
     output: Bare<MapActivity>;

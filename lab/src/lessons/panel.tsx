@@ -54,6 +54,9 @@ export function LessonPanel({ session }: { session: Session }) {
           ))}
         </ul>
       </Part>
+      {!session.hidden.value.includes("files") && (
+        <p class="hint">To hand in what you did, download it under “Take it with you” among the controls.</p>
+      )}
       <Neighbours session={session} lesson={lesson} />
     </aside>
   );

@@ -18,6 +18,8 @@ export interface HandleEvents {
   place(part: string, to: Point): Promise<boolean>;
   /** The user takes the part away. */
   remove(part: string): void;
+  /** What a person should be told. */
+  say(text: string): void;
   /** Whether something is being dragged, so that the camera must rest. */
   hold(held: boolean): void;
 }
@@ -75,16 +77,26 @@ export class Handle {
 
   private go(to: Point): void {
     this.shown = to;
-    const [x, y] = to;
+    this.button.setAttribute("aria-label", this.told());
+  }
+
+  /** "Target, 12 cm right, 25 cm ahead of the shoulder". */
+  private told(): string {
+    const [x, y] = this.shown;
     const right = `${centimetres(x)} ${x < 0 ? "left" : "right"}`;
     const ahead = `${centimetres(y)} ${y < 0 ? "behind" : "ahead of"} the shoulder`;
-    this.button.setAttribute("aria-label", `${this.label}, ${right}, ${ahead}`);
+    return `${this.label}, ${right}, ${ahead}`;
   }
 
   private move(to: Point): void {
     this.before ??= this.shown;
     this.go(to);
     this.events.preview(this.part, to);
+  }
+
+  private step(to: Point): void {
+    this.move(to);
+    this.events.say(`${this.told()}.`);
   }
 
   private back(): void {
@@ -150,7 +162,7 @@ export class Handle {
       ArrowDown: [x, y - far],
     };
     const to = places[event.key];
-    if (to !== undefined) this.move(to);
+    if (to !== undefined) this.step(to);
     else if (event.key === "Enter") this.set();
     else if (event.key === "Escape") this.back();
     else if (event.key === "Delete" && removable) this.events.remove(this.part);

@@ -3,9 +3,9 @@
 import { PerspectiveCamera, Spherical, Vector3 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
-const HOME = new Vector3(0.14, -0.5, 0.86);
-const ABOVE = new Vector3(0, 0.0299, 1.15);
-const MIDDLE = new Vector3(0, 0.03, 0);
+const HOME = new Vector3(0.14, -0.53, 0.86);
+const ABOVE = new Vector3(0, -0.0001, 1.15);
+const MIDDLE = new Vector3();
 const FIELD_DEG = 40;
 /** One key press turns this far [rad], or comes nearer by this factor. */
 const TURN = Math.PI / 36;

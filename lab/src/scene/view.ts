@@ -130,6 +130,7 @@ class View implements SceneView {
       gaze.lines.visible = looksElsewhere(scenes, agent);
     }
     this.armLine.visible = false;
+    this.text.textContent = whatIsSeen(scenes, null);
     const [first] = scenes;
     if (first !== undefined) {
       this.arm = armOf(first, startIsPosture(this.options.parts) ? "palm" : "fingertip");
@@ -187,8 +188,7 @@ class View implements SceneView {
   }
 
   describe(episode: EpisodeState | null): string {
-    this.text.textContent = whatIsSeen(this.scenes, episode);
-    return this.text.textContent;
+    return whatIsSeen(this.scenes, episode);
   }
 
   dispose(): void {
@@ -263,6 +263,7 @@ class View implements SceneView {
 
   private handleEvents() {
     return {
+      say: (text: string) => this.say(text),
       hold: (held: boolean) => this.orbit.enable(!held),
       remove: (part: string) => void this.ask({ ...this.given, [part]: null }),
       preview: (part: string, to: Point) => this.preview(part, to),

@@ -2,26 +2,33 @@
 import { effect } from "@preact/signals";
 import type { Session } from "./session";
 
-export function keepAddress(session: Session): () => void {
-  const followed = () => {
-    if (location.hash.slice(1) !== session.address()) {
-      void session.attempt(() => session.follow(location.hash));
+export function keepAddress(session: Session): void {
+  let following = false;
+
+  /** Goes where the browser went; it may go on while the engine still works. */
+  const follow = async () => {
+    if (following) return;
+    following = true;
+    for (let hash = ""; location.hash !== hash && here() !== session.address(); ) {
+      hash = location.hash;
+      await session.attempt(() => session.follow(hash));
     }
+    following = false;
+    write(session.address(), "replaceState");
   };
-  addEventListener("popstate", followed);
-  let first = true;
-  const stop = effect(() => {
+  addEventListener("popstate", () => void follow());
+
+  // What was wrong in the first link is not worth a way back.
+  write(session.address(), "replaceState");
+  effect(() => {
     const address = session.address();
-    if (location.hash.slice(1) !== address) {
-      const url = `${location.pathname}${location.search}${address && "#"}${address}`;
-      // What was wrong in the first link is not worth a way back.
-      if (first) history.replaceState(null, "", url);
-      else history.pushState(null, "", url);
-    }
-    first = false;
+    if (!following) write(address, "pushState");
   });
-  return () => {
-    stop();
-    removeEventListener("popstate", followed);
-  };
+}
+
+const here = () => location.hash.slice(1);
+
+function write(address: string, how: "pushState" | "replaceState"): void {
+  if (here() === address) return;
+  history[how](null, "", `${location.pathname}${location.search}${address && "#"}${address}`);
 }

@@ -46,11 +46,6 @@ const move =
     await page.keyboard.press("Enter");
   };
 
-const seen =
-  (view: string): Deed =>
-  (page) =>
-    page.getByRole("radio", { name: view, exact: true }).check();
-
 const silenceHalf: Deed = async (page) => {
   await page.getByLabel(/brush: silence/).check();
   await page.getByLabel("brush radius").fill("5");
@@ -73,9 +68,9 @@ const times = (n: number, name: string) => babble(...Array.from({ length: n }, (
 
 export const DEEDS: Record<string, Deed[][]> = {
   equilibrium: [[playUntil(/./)], [setUp(1), playUntil(/./)], [setUp(2), playUntil(/collision/), test]],
-  eye: [[seen("All"), next, move("target", "ArrowDown")], [move("obstacle", "ArrowDown")], [setUp(2), next]],
+  eye: [[next, move("target", "ArrowDown")], [move("obstacle", "ArrowDown")], [setUp(2), next]],
   "population-codes": [
-    [seen("All"), next, move("obstacle", "ArrowDown")],
+    [next, move("obstacle", "ArrowDown")],
     [setUp(1), next],
     [setUp(2), times(5, "Babble 100 ×"), test],
     [silenceHalf, test],

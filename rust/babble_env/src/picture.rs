@@ -6,7 +6,7 @@ use babble_eye::{
     render_rgb, render_smooth, third_person,
 };
 use image::imageops::{FilterType, resize, thumbnail};
-use image::{DynamicImage, RgbImage};
+use image::{Rgb, RgbImage};
 
 use crate::error::EnvError;
 use crate::named_enum::named_enum;
@@ -118,7 +118,8 @@ impl Scene<'_> {
             }
             View::Edges => {
                 let edges = foveal_edges(self.things, &self.eye.camera(self.gaze));
-                let edges = DynamicImage::ImageLuma8(edges).into_rgb8();
+                let grey = |x, y| Rgb([edges.get_pixel(x, y)[0]; 3]);
+                let edges = RgbImage::from_fn(edges.width(), edges.height(), grey);
                 resize(&edges, width, height, FilterType::Nearest)
             }
         })

@@ -228,7 +228,11 @@ impl LearnerMind {
         let brain = self.learner.brain()?;
         let weights = self.bytes() / 4;
         let steps = self.learner.babble_steps(task)? as u64;
-        let physics = task.most_physics_steps();
+        // At least so much, before any of it is done.
+        let mut least = *cost;
+        least.add_steps(&**task, n * steps);
+        least.add_learning(n, weights, &brain);
+        least.check()?;
         let mut learner = self.learner.copied();
         let mut left = n;
         while left > 0 {
@@ -236,12 +240,7 @@ impl LearnerMind {
             let before = learner.babbled();
             self.teach(&mut *learner, task, some as usize, executor)?;
             let babbles = learner.babbled() - before;
-            if task.has_long_steps() {
-                cost.add_steps(&**task, babbles * steps, physics);
-            } else {
-                // A whole movement.
-                cost.add_steps(&**task, babbles, physics);
-            }
+            cost.add_steps(&**task, babbles * steps);
             cost.add_learning(some, weights, &brain);
             cost.check()?;
             left -= some;

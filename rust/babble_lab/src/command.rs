@@ -1,6 +1,7 @@
 //! What a user does.
 
 use std::collections::BTreeMap;
+use std::str::FromStr;
 
 use babble_env::CaseValue;
 use serde::{Deserialize, Serialize};
@@ -77,6 +78,21 @@ pub enum MapName {
     Input,
     /// The map that is recalled.
     Output,
+}
+
+impl FromStr for MapName {
+    type Err = Fault;
+
+    fn from_str(name: &str) -> Result<Self, Fault> {
+        match name {
+            "input" => Ok(Self::Input),
+            "output" => Ok(Self::Output),
+            _ => Err(Fault::config(
+                "map",
+                format!("{name:?} is not one of input, output"),
+            )),
+        }
+    }
 }
 
 /// An answer to a question.

@@ -1,7 +1,7 @@
 //! What commands cost, estimated from their numbers: a file from anybody must not keep a machine busy for
 //! hours.
 
-use babble_env::AnyTask;
+use babble_env::{AnyTask, Config};
 use serde_json::Value;
 
 use crate::fault::Fault;
@@ -9,7 +9,7 @@ use crate::fault::Fault;
 /// Most work of a session, in seconds of one thread of a usual machine.
 const MOST_SECONDS: f64 = 1_800.0;
 /// Most weights of an agent.
-const MOST_WEIGHTS: usize = 8_000_000;
+const MOST_WEIGHTS: usize = 10_000_000;
 
 /// A step of physics without and with contacts \[s\].
 const PHYSICS_STEP_S: [f64; 2] = [15e-9, 7e-6];
@@ -25,11 +25,18 @@ const MOVING_S: f64 = 6.0;
 pub(crate) struct Cost(f64);
 
 impl Cost {
-    /// Adds the cost of some control steps, each of so many physics steps.
-    pub(crate) fn add_steps(&mut self, task: &dyn AnyTask, control: u64, physics: u64) {
-        let kind = usize::from(task.has_long_steps());
-        let each = CONTROL_STEP_S[kind] + physics as f64 * PHYSICS_STEP_S[kind];
-        self.0 += control as f64 * each;
+    /// Adds the cost of some control steps.
+    pub(crate) fn add_steps(&mut self, task: &dyn AnyTask, steps: u64) {
+        let Config { reach, grasp, .. } = task.config();
+        let touches = task.unconverged_steps().is_some();
+        let kind = usize::from(touches);
+        let physics = if touches {
+            grasp.physics_steps
+        } else {
+            reach.physics_steps
+        };
+        let each = CONTROL_STEP_S[kind] + f64::from(physics) * PHYSICS_STEP_S[kind];
+        self.0 += steps as f64 * each;
     }
 
     /// Adds the cost of learning from babbles.

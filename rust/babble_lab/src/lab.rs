@@ -306,6 +306,10 @@ impl Lab {
 
     fn test(&mut self, n: u64) -> Result<Happened, Fault> {
         let protocol = making::protocol(&self.setup)?;
+        let mut most = self.cost;
+        let steps = n * self.agents.len() as u64 * u64::from(self.task.spec().max_episode_steps);
+        most.add_steps(&*self.task, steps);
+        most.check()?;
         let cases = test_cases::cases(&self.task, protocol.name, n, &mut self.executor)?;
         let mut outcomes = Vec::new();
         for agent in &self.agents {

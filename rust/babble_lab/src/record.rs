@@ -73,14 +73,6 @@ impl Record {
         }
         Ok(record)
     }
-
-    /// The text of a file.
-    ///
-    /// # Errors
-    /// Never for numbers that are finite; the serializer's signature has it.
-    pub fn to_json(&self) -> Result<String, Fault> {
-        Ok(serde_json::to_string_pretty(self)?)
-    }
 }
 
 impl Lab {

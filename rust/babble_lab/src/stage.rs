@@ -130,7 +130,7 @@ impl Stage {
                 player.step(agent, self.seed, &self.task, executor)?;
             }
             let steps = player.progress.steps;
-            cost.add_steps(&*self.task, steps - before, physics_steps(&*self.task));
+            cost.add_steps(&*self.task, steps - before);
             cost.check()?;
             if steps > before && !player.progress.running {
                 let outcome = player.outcome().name().to_owned();
@@ -232,16 +232,6 @@ impl StageSnapshot {
     pub(crate) fn bytes(&self) -> usize {
         let players = self.players.iter().map(|(bytes, _)| bytes.len());
         self.drawer.len() + players.sum::<usize>()
-    }
-}
-
-/// Physics steps of one control step.
-pub(crate) fn physics_steps(task: &dyn AnyTask) -> u64 {
-    let config = task.config();
-    if task.has_long_steps() {
-        task.most_physics_steps()
-    } else {
-        config.reach.physics_steps.into()
     }
 }
 

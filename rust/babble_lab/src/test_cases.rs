@@ -7,7 +7,7 @@ use babble_env::{AnyTask, CaseValues, Executor, Purpose};
 use crate::agent::Agent;
 use crate::cost::Cost;
 use crate::fault::Fault;
-use crate::stage::{one, physics_steps};
+use crate::stage::one;
 use crate::state::Outcomes;
 
 /// Seed of the test cases, which is that of the published results.
@@ -53,7 +53,7 @@ pub(crate) fn play(
             batch.step(&action)?;
             steps += 1;
         };
-        cost.add_steps(&**task, steps, physics_steps(&**task));
+        cost.add_steps(&**task, steps);
         cost.check()?;
         *outcomes.entry(outcome.name().to_owned()).or_default() += 1;
     }

@@ -397,6 +397,14 @@ fn chain() {
     student.learns(100);
     student.tests(40);
     student.has_done(3);
+    // The answer that the small ones are lost.
+    let mut with_balls_of = |diameter: f64| {
+        let mut setup = student.lab.state().unwrap().setup;
+        setup.config = common::object(&json!({"grasp": {"diameters_m": [diameter]}}));
+        student.changes(setup);
+        student.tests(40)
+    };
+    assert!(with_balls_of(0.024) < 0.1 && with_balls_of(0.06) > 0.8);
     student.answers(&[
         ("squeeze", json!("The small ones")),
         ("touch", json!("It advances until the palm touches")),

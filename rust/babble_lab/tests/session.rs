@@ -3,7 +3,7 @@
 
 mod common;
 
-use babble_lab::{AgentSetup, Answer, Command, Happened, MapName, Policies, replay};
+use babble_lab::{AgentSetup, Answer, Command, Happened, MapName, Policies, ToJson, replay};
 use common::{GRASP, REACH, babble, lab, recall, setup, step, test};
 use serde_json::json;
 

@@ -10,6 +10,7 @@ mod convert;
 mod errors;
 mod grasp;
 mod guarded;
+mod lab;
 mod learner;
 mod policy;
 mod reach;
@@ -37,6 +38,8 @@ mod _core {
     };
     #[pymodule_export]
     use crate::grasp::{grasp_posture, hold, keeps};
+    #[pymodule_export]
+    use crate::lab::check_record;
     #[pymodule_export]
     use crate::learner::{Learner, babble, babble_steps, babble_to, brain_json, learnable_babbles};
     #[pymodule_export]

@@ -2,9 +2,7 @@
 #![warn(clippy::disallowed_methods, clippy::disallowed_types)]
 
 use babble_env::Executor;
-use babble_lab::expression::RuleExpression;
-use babble_lab::{Command, Fault, Lab, MapName, Setup};
-use serde::Serialize;
+use babble_lab::{Command, Fault, Lab, MapName, Setup, ToJson};
 use wasm_bindgen::prelude::*;
 
 /// What an export returns: JSON or bytes, or a [`Fault`] as JSON, which JavaScript throws.
@@ -40,8 +38,7 @@ pub fn default_setup(env: &str) -> Reply<String> {
 /// A fault.
 #[wasm_bindgen(js_name = checkRule)]
 pub fn check_rule(rule: &str) -> Reply<String> {
-    let fault = RuleExpression::parse(rule).err();
-    json(&fault.map(|fault| serde_json::json!({ "problem": fault.problem, "at": fault.at })))
+    babble_lab::check_rule(rule).map_err(thrown)
 }
 
 /// The lessons, as JSON.
@@ -50,7 +47,7 @@ pub fn check_rule(rule: &str) -> Reply<String> {
 /// A fault.
 #[wasm_bindgen]
 pub fn lessons() -> Reply<String> {
-    json(&babble_lab::lessons())
+    json(babble_lab::lessons())
 }
 
 /// Networks that were trained elsewhere, by name.
@@ -200,22 +197,20 @@ impl Session {
     /// The session so far as a file to hand in, JSON; `lesson` is undefined outside of one.
     #[expect(clippy::needless_pass_by_value, reason = "as wasm-bindgen passes it")]
     pub fn record(&self, lesson: Option<String>, name: &str) -> Reply<String> {
-        let record = self.0.record(lesson.as_deref(), name).map_err(thrown)?;
-        record.to_json().map_err(thrown)
+        json(&self.0.record(lesson.as_deref(), name).map_err(thrown)?)
     }
 }
 
 fn map_name(name: &str) -> Reply<MapName> {
-    serde_json::from_value(name.into())
-        .map_err(|error| thrown(Fault::config("map", error.to_string())))
+    name.parse().map_err(thrown)
 }
 
-fn json(value: &(impl Serialize + ?Sized)) -> Reply<String> {
-    serde_json::to_string(value).map_err(|error| thrown(error.into()))
+fn json(value: &(impl ToJson + ?Sized)) -> Reply<String> {
+    value.to_json().map_err(thrown)
 }
 
 #[expect(clippy::needless_pass_by_value, reason = "as map_err passes it")]
 fn thrown(fault: Fault) -> JsValue {
-    let text = serde_json::to_string(&fault).unwrap_or_else(|_| fault.problem.clone());
+    let text = fault.to_json().unwrap_or_else(|_| fault.problem.clone());
     JsValue::from_str(&text)
 }

@@ -34,6 +34,7 @@ test("parts are moved by keys: set, put back, taken away", async ({ page }) => {
   await page.keyboard.press("ArrowDown");
   const moved = await placeOf(page, "target");
   expect(moved).not.toBe(before);
+  await expect(page.locator(".status")).toContainText(moved);
   await page.keyboard.press("Escape");
   expect(await placeOf(page, "target")).toBe(before);
   await page.keyboard.press("ArrowDown");

@@ -107,11 +107,18 @@ fn rule_lines(rule: &RuleExpression) -> String {
     ] {
         expression = expression.replace(name, function);
     }
-    format!(
-        "\nimport numpy as np\n\ndef rule(a, a_mean, g, g_mean, w, eta, w_max):\n    \
-         a, a_mean = a[:, None], a_mean[:, None]\n    \
-         return np.zeros_like(w) + ({expression})\n\n"
-    )
+    let result = format!("    return np.zeros_like(w) + ({expression})");
+    [
+        "",
+        "import numpy as np",
+        "",
+        "def rule(a, a_mean, g, g_mean, w, eta, w_max):",
+        "    a, a_mean = a[:, None], a_mean[:, None]",
+        &result,
+        "",
+        "",
+    ]
+    .join("\n")
 }
 
 /// A value as Python writes it.

@@ -20,31 +20,7 @@ fn the_lines_make_the_same_agent() {
     };
     let mut lab = lab(other);
     lab.apply(&babble(5)).unwrap();
-    assert_eq!(
-        lab.python(0).unwrap(),
-        r#"import gymnasium as gym
-import gym_babble
-
-config = {"body": {"eye": {"frame": "helmholtz", "pan_deg": [-65.0, 65.0], "tilt_deg": [-65.0, 65.0]}}, "profile": "icub"}
-env = gym.make("BabbleReach-v0", config=config, settled=True)
-
-import numpy as np
-
-def rule(a, a_mean, g, g_mean, w, eta, w_max):
-    a, a_mean = a[:, None], a_mean[:, None]
-    return np.zeros_like(w) + (eta * (a - a_mean) * np.maximum(g, 0) * (w_max**2 - w**2))
-
-agent = gym_babble.HebbBabbling(env, variant="conjunctive", seed=3, rule=rule, brain={"rule": {"eta": 0.5}, "sigma": 1.0})
-agent.learn(5, progress_bar=True)
-observation, info = env.reset(seed=3)
-state, done = None, False
-while not done:
-    action, state = agent.predict(observation, state)
-    observation, reward, terminated, truncated, info = env.step(action)
-    done = terminated or truncated
-print(info["outcome"])
-"#
-    );
+    assert_eq!(lab.python(0).unwrap(), include_str!("golden/opened.txt"));
 }
 
 #[test]

@@ -36,10 +36,10 @@ def test_a_network_acts_as_its_model_does(name):
 
 @pytest.mark.parametrize("task", ["reach", "grasp"])
 def test_the_labs_networks_are_those_of_the_study(task):
-    # Six significant bits of each weight: the largest difference of an action is some hundredths.
+    # With five significant bits of each weight.
     loaded = named_agent(f"{task}.ppo")
     data = (POLICIES / f"{task}.safetensors").read_bytes()
-    assert data == export_policy(loaded, bits=6).to_bytes()
+    assert data == export_policy(loaded, bits=5).to_bytes()
 
 
 @pytest.mark.parametrize(

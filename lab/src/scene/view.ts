@@ -111,6 +111,7 @@ class View implements SceneView {
     this.armLine.visible = false;
     this.armLine.frustumCulled = false;
     this.stage.add(new HemisphereLight(0xffffff, 0x8a8f99, 2), sun(), this.grid, this.armLine);
+    canvas.addEventListener("webglcontextrestored", () => this.draw());
     this.observer.observe(this.frame);
     this.resize();
   }
@@ -199,6 +200,8 @@ class View implements SceneView {
     this.armLine.geometry.dispose();
     this.armLine.material.dispose();
     this.renderer.dispose();
+    // A browser has few contexts, and takes long to notice that one is free.
+    this.renderer.forceContextLoss();
     this.frame.remove();
   }
 

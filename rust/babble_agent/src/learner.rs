@@ -4,7 +4,6 @@ use std::iter;
 
 use babble_env::{Config, Executor, Task};
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
 use crate::babbling::{Babble, Babbling};
 use crate::error::AgentError;
@@ -301,9 +300,9 @@ impl<N: Network> Learner<N> {
             .collect();
         let (json, values) = tensors::read(N::KEY, bytes, &names)?;
         check_version(&json)?;
-        let fields: Value = serde_json::from_str(&json).map_err(|e| tensors::file(&e))?;
         let metadata: Metadata<N::Config, <N::Task as Babble>::Options> =
-            serde_path_to_error::deserialize(fields).map_err(|e| tensors::file(&e))?;
+            serde_path_to_error::deserialize(tensors::fields(&json)?)
+                .map_err(|e| tensors::file(&e))?;
         metadata.check_counts(<N::Task as Babble>::RAREST)?;
         metadata.config.validate()?;
         let mut network = N::new(metadata.brain)?;

@@ -6,7 +6,6 @@ use babble_brain::association::dot;
 use babble_env::spec::Spec;
 use babble_env::{AnyTask, Config, Executor, Options, registry};
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
 use crate::error::AgentError;
 use crate::policy::{Plan, Policy};
@@ -111,9 +110,8 @@ impl PolicyNetwork {
             .flat_map(|i| [format!("{i}.weight"), format!("{i}.bias")])
             .collect();
         let (json, values) = tensors::read(Self::KEY, bytes, &names)?;
-        let fields: Value = serde_json::from_str(&json).map_err(|e| tensors::file(&e))?;
-        let about: About =
-            serde_path_to_error::deserialize(fields).map_err(|e| tensors::file(&e))?;
+        let about: About = serde_path_to_error::deserialize(tensors::fields(&json)?)
+            .map_err(|e| tensors::file(&e))?;
         if about.version != VERSION {
             return Err(refused(format!(
                 "version {} is not {VERSION}",

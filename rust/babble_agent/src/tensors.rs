@@ -168,6 +168,12 @@ fn values(tensors: &SafeTensors<'_>, name: &str) -> Result<Shaped, AgentError> {
     Ok((tensor.shape().to_vec(), values))
 }
 
+/// The fields of the JSON in a header.
+pub(crate) fn fields(json: &str) -> Result<Value, AgentError> {
+    let mut json = serde_json::Deserializer::from_str(json);
+    serde_path_to_error::deserialize(&mut json).map_err(|e| file(&e))
+}
+
 /// The config in a file. The code that reads a config is there once, which a browser downloads.
 pub(crate) fn whole_config<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Config, D::Error> {
     Config::from_whole(Value::deserialize(deserializer)?).map_err(D::Error::custom)

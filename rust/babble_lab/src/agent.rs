@@ -48,7 +48,7 @@ pub(crate) enum Mind {
 pub(crate) struct LearnerMind {
     pub(crate) learner: Arc<dyn AnyLearner>,
     /// The rule that a user wrote, if it learns by one.
-    rule: Option<RuleExpression>,
+    pub(crate) rule: Option<RuleExpression>,
     pub(crate) lesions: BTreeSet<Lesion>,
     /// Hash of weights and counts.
     pub(crate) hash: u64,

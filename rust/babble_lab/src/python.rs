@@ -5,6 +5,7 @@ use std::fmt::Write;
 use serde_json::{Map, Value};
 
 use crate::command::Command;
+use crate::expression::RuleExpression;
 use crate::fault::Fault;
 use crate::lab::Lab;
 use crate::making;
@@ -34,8 +35,8 @@ impl Lab {
         let _ = writeln!(lines, "env = gym.make({})", arguments.join(", "));
         lines += &self.agent_lines(&made.setup, agent)?;
         let _ = writeln!(lines, "observation, info = env.reset(seed={})", setup.seed);
-        lines += "done = False\nwhile not done:\n";
-        lines += "    action, _ = agent.predict(observation)\n";
+        lines += "state, done = None, False\nwhile not done:\n";
+        lines += "    action, state = agent.predict(observation, state)\n";
         lines += "    observation, reward, terminated, truncated, info = env.step(action)\n";
         lines += "    done = terminated or truncated\n";
         lines += "print(info[\"outcome\"])\n";
@@ -57,6 +58,10 @@ impl Lab {
             AgentSetup::Hebb { variant, brain, .. } => (variant, brain),
         };
         let mut lines = String::new();
+        let rule = self.learner(place)?.rule.as_ref();
+        if let Some(rule) = rule {
+            lines += &rule_lines(rule);
+        }
         let changed = |command: &Command| matches!(command, Command::Change { .. });
         if self.commands.iter().any(changed) {
             lines +=
@@ -70,6 +75,9 @@ impl Lab {
             "env, variant={}, seed={seed}",
             literal(&variant.clone().into())
         );
+        if rule.is_some() {
+            arguments += ", rule=rule";
+        }
         if !brain.is_empty() {
             let _ = write!(arguments, ", brain={}", literal(&brain.clone().into()));
         }
@@ -83,6 +91,34 @@ impl Lab {
         }
         Ok(lines)
     }
+}
+
+/// The rule as a function of arrays, whose results are the same but for rounding.
+fn rule_lines(rule: &RuleExpression) -> String {
+    let mut expression = rule.to_string().replace('^', "**");
+    for (name, function) in [
+        ("abs(", "np.abs("),
+        ("min(", "np.minimum("),
+        ("max(", "np.maximum("),
+        ("tanh(", "np.tanh("),
+        ("exp(", "np.exp("),
+        ("sqrt(", "np.sqrt("),
+        ("sign(", "np.sign("),
+    ] {
+        expression = expression.replace(name, function);
+    }
+    let result = format!("    return np.zeros_like(w) + ({expression})");
+    [
+        "",
+        "import numpy as np",
+        "",
+        "def rule(a, a_mean, g, g_mean, w, eta, w_max):",
+        "    a, a_mean = a[:, None], a_mean[:, None]",
+        &result,
+        "",
+        "",
+    ]
+    .join("\n")
 }
 
 /// A value as Python writes it.

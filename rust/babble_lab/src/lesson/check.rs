@@ -7,7 +7,6 @@ use babble_env::CaseValue;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::Right;
 use crate::command::{Answer, Case};
 use crate::history::{Event, Happened};
 use crate::setup::Setup;
@@ -202,6 +201,15 @@ impl Wanted {
             Self::Is(wanted) => value == Some(wanted),
         }
     }
+}
+
+/// The right answer.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Right {
+    /// One of the choices.
+    Choice(String),
+    /// A number from the first to the second.
+    Between([f64; 2]),
 }
 
 impl Right {

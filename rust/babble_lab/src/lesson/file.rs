@@ -3,8 +3,8 @@
 use serde::Deserialize;
 use serde_json::{Map, Value};
 
-use super::check::Step;
-use super::{Equation, Lesson, Question, Right, Task};
+use super::check::{Right, Step};
+use super::content::{Equation, Lesson, Question, Task};
 use crate::setup::{AgentSetup, Setup};
 
 /// A lesson as it stands in its file.

@@ -59,8 +59,9 @@ test-rust:
 test-python: setup
 	$(BIN)/python -m pytest
 
-slow: setup lab-page ## Run the slow tests (ten minutes)
+slow: setup ## Run the slow tests (ten minutes)
 	$(BIN)/python -m pytest -m slow
+	$(MAKE) lab-page
 	cd lab && npm run browser:long
 
 soak: setup ## Play both tasks at random, ten million steps each, in Rust and Python (45 minutes)

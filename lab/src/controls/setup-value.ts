@@ -7,20 +7,27 @@ type Tree = { [name: string]: Json };
 export function agentsWith(setup: Setup, slider: Slider): number[] {
   if (slider.where !== "brain") return [0];
   return setup.agents.flatMap((agent, place) =>
-    agent.kind === "hebb" && slider.variants?.includes(agent.variant) ? [place] : [],
+    agent.kind === "hebb" && Object.hasOwn(slider.defaults, agent.variant) ? [place] : [],
   );
+}
+
+/** The value where a setup says nothing: that of the agent's variant, or of the profile. */
+export function sliderDefault(setup: Setup, slider: Slider, agent: number): number | string | boolean {
+  const one = setup.agents[agent];
+  const name = slider.where === "brain" && one?.kind === "hebb" ? one.variant : setup.profile;
+  return slider.defaults[name]!;
 }
 
 export function sliderValue(setup: Setup, slider: Slider, agent: number): Json {
   let value: Json | undefined = root(setup, slider, agent);
   for (const name of slider.path) value = isTree(value) ? value[name] : undefined;
-  if (value === undefined) return slider.default;
+  if (value === undefined) return sliderDefault(setup, slider, agent);
   return slider.list && Array.isArray(value) ? value[0]! : value;
 }
 
 /** The setup with another value; the slider's default is left out. */
 export function withValue(setup: Setup, slider: Slider, agent: number, value: Json): Setup {
-  const stored = value === slider.default ? undefined : slider.list ? [value] : value;
+  const stored = value === sliderDefault(setup, slider, agent) ? undefined : slider.list ? [value] : value;
   const changed = put(root(setup, slider, agent), slider.path, stored);
   if (slider.where !== "brain") return { ...setup, [slider.where]: changed };
   const agents = setup.agents.map((one, place) =>

@@ -3,7 +3,7 @@ import { useState } from "preact/hooks";
 import type { Json, Slider } from "../engine/contract";
 import type { Session } from "../session/session";
 import { Act, Group } from "./group";
-import { agentsWith, sliderValue, withValue } from "./setup-value";
+import { agentsWith, sliderDefault, sliderValue, withValue } from "./setup-value";
 
 const PLACES = 1000; // of a logarithmic slider
 
@@ -36,6 +36,7 @@ export function SliderControls({ session }: { session: Session }) {
 function SliderRow({ session, slider, agent }: { session: Session; slider: Slider; agent: number }) {
   const { setup } = session.state.value;
   const value = sliderValue(setup, slider, agent);
+  const usual = sliderDefault(setup, slider, agent);
   const set = (next: Json) =>
     session.attempt(() => session.change(withValue(session.state.value.setup, slider, agent, next)));
   const second =
@@ -65,8 +66,8 @@ function SliderRow({ session, slider, agent }: { session: Session; slider: Slide
       <Act
         session={session}
         class="small"
-        disabled={value === slider.default}
-        work={() => session.change(withValue(setup, slider, agent, slider.default))}
+        disabled={value === usual}
+        work={() => session.change(withValue(setup, slider, agent, usual))}
       >
         <span aria-hidden="true">↺</span>
         <span class="hidden">Default of {label}</span>

@@ -182,9 +182,9 @@ export interface Slider {
   step: number;
   logarithmic: boolean;
   list: boolean; // whether the value stands in a list of one: diameters_m = [0.04]
-  default: number | string | boolean;
+  /** Values where a setup says nothing: of a brain by variant, for those that have the number; else by profile. */
+  defaults: Record<string, number | string | boolean>;
   choices: (string | boolean)[] | null; // for the camera frame and flags: a list in place of a range
-  variants: string[] | null; // those whose brain has this number; null if it is not one of a brain
 }
 
 /** The engine as the page sees it: one for each tab, in a worker. */

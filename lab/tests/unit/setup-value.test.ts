@@ -15,9 +15,8 @@ const slider = (change: Partial<Slider>): Slider => ({
   step: 1,
   logarithmic: true,
   list: false,
-  default: 50,
+  defaults: { paper: 50, icub: 60 },
   choices: null,
-  variants: null,
   ...change,
 });
 
@@ -26,13 +25,13 @@ describe("a slider", () => {
     for (const one of [
       slider({}),
       slider({ list: true }),
-      slider({ where: "options", path: ["reflex"], default: true }),
-      slider({ where: "brain", path: ["rule", "eta"], variants: ["paper"] }),
+      slider({ where: "options", path: ["reflex"], defaults: { paper: true } }),
+      slider({ where: "brain", path: ["rule", "eta"], defaults: { paper: 1 } }),
     ]) {
       const changed = withValue(SETUP, one, 0, 7);
       expect(sliderValue(changed, one, 0)).toBe(7);
-      expect(sliderValue(SETUP, one, 0)).toBe(one.default);
-      expect(withValue(changed, one, 0, one.default)).toEqual(SETUP);
+      expect(sliderValue(SETUP, one, 0)).toBe(one.defaults.paper);
+      expect(withValue(changed, one, 0, one.defaults.paper!)).toEqual(SETUP);
     }
   });
 
@@ -47,8 +46,14 @@ describe("a slider", () => {
     expect(withValue(both, slider({}), 0, 50).config).toEqual({ body: { muscles: { kd: 8 } } });
   });
 
+  it("knows the values of another profile", () => {
+    const icub = { ...SETUP, profile: "icub" };
+    expect(sliderValue(icub, slider({}), 0)).toBe(60);
+    expect(withValue(icub, slider({}), 0, 50).config).toEqual({ body: { muscles: { kp: 50 } } });
+  });
+
   it("of a brain belongs to the agents whose variant has it", () => {
-    const eta = slider({ where: "brain", path: ["eta"], variants: ["chain"] });
+    const eta = slider({ where: "brain", path: ["eta"], defaults: { chain: 1 } });
     expect(agentsWith(SETUP, eta)).toEqual([]);
     const { agents } = SETUP;
     const chain = { kind: "hebb", variant: "chain", brain: {}, rule: null } as const;

@@ -1,8 +1,10 @@
 //! Numbers of body, task, maps and rule that the page shows as sliders.
 
+use std::collections::BTreeMap;
+
 use babble_agent::erased::brain_of;
-use babble_env::Config;
 use babble_env::registry;
+use babble_env::{Config, config::PROFILES};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -34,12 +36,11 @@ pub struct Slider {
     pub logarithmic: bool,
     /// Whether the value stands in a list of one.
     pub list: bool,
-    /// The value of the profile `paper`, or of the first variant that has it.
-    pub default: Value,
+    /// Its values where a setup says nothing: of a brain by variant, for those that have the number;
+    /// else by profile.
+    pub defaults: BTreeMap<&'static str, Value>,
     /// The values, if they are no numbers.
     pub choices: Option<Vec<Value>>,
-    /// The variants that have this number; none if it is not one of a brain.
-    pub variants: Option<Vec<&'static str>>,
 }
 
 /// Which part of a setup a slider changes.
@@ -122,33 +123,12 @@ pub(crate) fn of(task: &str, variants: &[&'static str]) -> Result<Vec<Slider>, F
 
 fn slider(task: &str, variants: &[&'static str], row: &Row) -> Result<Slider, Fault> {
     let &(id, place, path, symbol, label, unit, ref range) = row;
-    let pointer = format!("/{}", path.join("/"));
-    let mut default = Value::Null;
-    let mut having = Vec::new();
-    match place {
-        Body => {
-            let config = serde_json::to_value(Config::profile("paper")?)?;
-            default = config.pointer(&pointer).cloned().unwrap_or_default();
-        }
-        Options => {
-            let specs = registry::task(task)?.options;
-            let spec = specs.iter().find(|spec| spec.name == path[0]);
-            default = spec.map_or(Ok(Value::Null), |spec| serde_json::to_value(spec.default))?;
-        }
-        Brain => {
-            for &variant in variants {
-                if let Some(value) = brain_of(task, variant)?.pointer(&pointer) {
-                    if having.is_empty() {
-                        default = value.clone();
-                    }
-                    having.push(variant);
-                }
-            }
-        }
-    }
-    let list = default.is_array();
+    let mut defaults = defaults(task, variants, place, path)?;
+    let list = defaults.values().any(Value::is_array);
     if list {
-        default = default[0].clone();
+        for value in defaults.values_mut() {
+            *value = value[0].take();
+        }
     }
     let ([low, high, step], choices) = match range {
         Linear(numbers) => (*numbers, None),
@@ -171,8 +151,86 @@ fn slider(task: &str, variants: &[&'static str], row: &Row) -> Result<Slider, Fa
         step,
         logarithmic: matches!(range, Logarithmic(_)),
         list,
-        default,
+        defaults,
         choices,
-        variants: (place == Brain).then_some(having),
     })
+}
+
+/// The values of a field where a setup says nothing, by variant or profile.
+fn defaults(
+    task: &str,
+    variants: &[&'static str],
+    place: Place,
+    path: &[&str],
+) -> Result<BTreeMap<&'static str, Value>, Fault> {
+    let pointer = format!("/{}", path.join("/"));
+    let mut defaults = BTreeMap::new();
+    match place {
+        Body => {
+            for profile in PROFILES {
+                let config = serde_json::to_value(Config::profile(profile)?)?;
+                defaults.extend(
+                    config
+                        .pointer(&pointer)
+                        .map(|value| (profile, value.clone())),
+                );
+            }
+        }
+        Options => {
+            let specs = registry::task(task)?.options;
+            for spec in specs.iter().filter(|spec| spec.name == path[0]) {
+                let value = serde_json::to_value(spec.default)?;
+                defaults.extend(PROFILES.map(|profile| (profile, value.clone())));
+            }
+        }
+        Brain => {
+            for &variant in variants {
+                let brain = brain_of(task, variant)?;
+                defaults.extend(
+                    brain
+                        .pointer(&pointer)
+                        .map(|value| (variant, value.clone())),
+                );
+            }
+        }
+    }
+    Ok(defaults)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slider_reaches_its_values_in_every_profile_and_variant() -> Result<(), Fault> {
+        let tasks = [
+            ("reach", ["paper", "conjunctive"]),
+            ("grasp", ["paper", "chain"]),
+        ];
+        for (task, variants) in tasks {
+            for slider in of(task, &variants)? {
+                assert!(!slider.defaults.is_empty(), "{}", slider.id);
+                for value in slider.defaults.values() {
+                    let within = value
+                        .as_f64()
+                        .is_some_and(|x| (slider.low..=slider.high).contains(&x));
+                    let chosen = slider
+                        .choices
+                        .as_ref()
+                        .is_some_and(|all| all.contains(value));
+                    assert!(within || chosen, "{task} {} = {value}", slider.id);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn a_profile_has_values_of_its_own() -> Result<(), Fault> {
+        let sliders = of("reach", &["paper"])?;
+        let frame = sliders.iter().find(|slider| slider.id == "frame");
+        let frames = frame.map(|slider| [&slider.defaults["paper"], &slider.defaults["icub"]]);
+        assert_eq!(frames, Some([&json!("helmholtz"), &json!("fick")]));
+        Ok(())
+    }
 }

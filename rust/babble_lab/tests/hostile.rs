@@ -129,11 +129,8 @@ fn every_end_of_every_slider_opens() {
         let sliders = &registry.sliders[environment.task];
         for variant in &registry.variants[environment.task] {
             for slider in sliders {
-                let bounds = vec![
-                    json!(slider.low),
-                    json!(slider.high),
-                    slider.default.clone(),
-                ];
+                let mut bounds = vec![json!(slider.low), json!(slider.high)];
+                bounds.extend(slider.defaults.values().cloned());
                 for value in slider.choices.clone().unwrap_or(bounds) {
                     opens(environment.id, variant, slider, value);
                 }
@@ -169,14 +166,7 @@ fn opens(env: &str, variant: &str, slider: &babble_lab::Slider, value: Value) {
     {
         "config" => setup.config = part,
         "options" => setup.options = part,
-        _ if slider
-            .variants
-            .iter()
-            .flatten()
-            .all(|name| *name != variant) =>
-        {
-            return;
-        }
+        _ if !slider.defaults.contains_key(variant) => return,
         _ => setup.agents[0] = common::hebb(variant, &Value::Object(part)),
     }
     if let Err(fault) = Lab::open(setup, Policies::default(), executor()) {

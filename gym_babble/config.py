@@ -147,7 +147,7 @@ class Grip:
     fingers: str = "virtual"
     """The four fingers share one command, the "virtual finger" [P]. "virtual": they are one chain
     of three joints [C]; "independent": twelve joints, so that they envelop an object one by one, at
-    1.2 to 1.6 times the cost of a physics step."""
+    1.2 to 1.5 times the cost of a physics step."""
     thumb_base_m: tuple[float, float] = (0.0, 0.006)
     """Where the thumb sits: along the forearm from the wrist, towards the palm's side [m] [C]."""
     thumb_direction_deg: float = 154.7

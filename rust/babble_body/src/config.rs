@@ -56,7 +56,7 @@ pub struct Muscles {
 pub enum Fingers {
     /// One chain of three joints carries the four fingers \[C\].
     Virtual,
-    /// Twelve joints: the fingers envelop an object one by one. A physics step costs 1.2 to 1.6 times
+    /// Twelve joints: the fingers envelop an object one by one. A physics step costs 1.2 to 1.5 times
     /// as much.
     Independent,
 }

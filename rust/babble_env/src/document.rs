@@ -63,9 +63,9 @@ pub(crate) fn fault(field: &str, error: &impl ToString) -> EnvError {
 }
 
 fn named<E: fmt::Display>(
-    found: Result<Unique, serde_path_to_error::Error<E>>,
+    found: Result<Document, serde_path_to_error::Error<E>>,
 ) -> Result<Value, EnvError> {
-    found.map(|Unique(value)| value).map_err(|error| {
+    found.map(|Document(value)| value).map_err(|error| {
         let path = error.path().to_string();
         // The whole document is the path ".", and "?" what could not be read as a field.
         let field = match path.trim_end_matches(['.', '?']) {
@@ -76,22 +76,23 @@ fn named<E: fmt::Display>(
     })
 }
 
-/// A value in which each field stands once and each number is finite.
-struct Unique(Value);
+/// A value of any format in which each name of a map stands once and each number is finite.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Document(pub Value);
 
-impl<'de> Deserialize<'de> for Unique {
+impl<'de> Deserialize<'de> for Document {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(UniqueVisitor).map(Self)
+        deserializer.deserialize_any(DocumentVisitor).map(Self)
     }
 }
 
-struct UniqueVisitor;
+struct DocumentVisitor;
 
-impl<'de> Visitor<'de> for UniqueVisitor {
+impl<'de> Visitor<'de> for DocumentVisitor {
     type Value = Value;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a value of a config")
+        f.write_str("null, a bool, a finite number, a string, a list or a map")
     }
 
     fn visit_bool<E>(self, value: bool) -> Result<Value, E> {
@@ -122,7 +123,7 @@ impl<'de> Visitor<'de> for UniqueVisitor {
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Value, A::Error> {
         let mut all = Vec::new();
-        while let Some(Unique(item)) = items.next_element()? {
+        while let Some(Document(item)) = items.next_element()? {
             all.push(item);
         }
         Ok(Value::Array(all))
@@ -131,7 +132,7 @@ impl<'de> Visitor<'de> for UniqueVisitor {
     fn visit_map<A: MapAccess<'de>>(self, mut fields: A) -> Result<Value, A::Error> {
         let mut all = Map::new();
         while let Some(name) = fields.next_key::<String>()? {
-            let Unique(value) = fields.next_value()?;
+            let Document(value) = fields.next_value()?;
             if all.contains_key(&name) {
                 return Err(A::Error::custom(format_args!("duplicate field {name:?}")));
             }

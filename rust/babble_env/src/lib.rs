@@ -31,6 +31,7 @@ pub mod tasks;
 pub use batch::{Autoreset, Batch};
 pub use case::{CaseValue, CaseValues};
 pub use config::Config;
+pub use document::Document;
 pub use episode::Episode;
 pub use erased::{AnyBatch, AnyTask, downcast};
 pub use error::EnvError;

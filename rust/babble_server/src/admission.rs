@@ -36,8 +36,8 @@ pub struct Admitted {
     pub name: String,
     /// Address of the client that began it.
     pub client: IpAddr,
-    /// Id of its environments.
-    pub env: String,
+    /// Id of its environments, which a reset of OpenEnv's may change.
+    env: Mutex<String>,
     /// How many there are.
     pub envs: usize,
     /// When it began.
@@ -58,6 +58,23 @@ pub struct Admission {
     threads: usize,
     /// What the server knows of the session.
     pub admitted: Arc<Admitted>,
+}
+
+impl Admitted {
+    /// Id of its environments.
+    #[must_use]
+    pub fn env(&self) -> String {
+        let env = self.env.lock();
+        env.unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Its environments have this id now.
+    pub(crate) fn plays(&self, env: &str) {
+        let mut now = self.env.lock().unwrap_or_else(PoisonError::into_inner);
+        if *now != env {
+            env.clone_into(&mut now);
+        }
+    }
 }
 
 impl Admissions {
@@ -142,7 +159,7 @@ impl Admissions {
         let admitted = Arc::new(Admitted {
             name: format!("s{number}"),
             client,
-            env: env.to_owned(),
+            env: Mutex::new(env.to_owned()),
             envs,
             began: Instant::now(),
             steps: AtomicU64::new(0),

@@ -15,7 +15,6 @@ pub mod admission;
 mod app;
 pub mod binary;
 pub mod connection;
-mod document;
 pub mod fault;
 mod gate;
 mod health;

@@ -103,7 +103,7 @@ fn table(html: &mut String, sessions: &[Arc<Admitted>]) -> fmt::Result {
             "<tr><td>{}<td>{}<td>{}<td>{}<td>{}<td>{}<td>{}<td>{}",
             session.name,
             session.client,
-            session.env,
+            session.env(),
             Grouped(session.envs as u64),
             Grouped(session.steps.load(Ordering::Relaxed)),
             Grouped(session.errors.load(Ordering::Relaxed)),

@@ -15,14 +15,12 @@
 
 use std::collections::BTreeMap;
 
-use babble_env::{Autoreset, CaseValue};
+use babble_env::{Autoreset, CaseValue, Document};
 use bytemuck::{AnyBitPattern, NoUninit};
 use schemars::JsonSchema;
 use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value};
-
-use crate::document;
 
 /// Name of the WebSocket subprotocol.
 pub const SUBPROTOCOL: &str = "gym-babble.v1";
@@ -124,14 +122,26 @@ pub struct Make {
     #[serde(default = "next_step")]
     pub autoreset: String,
     /// Name of a profile, or a map of what differs from one; the paper's if nil.
-    #[serde(default, deserialize_with = "document::value")]
+    #[serde(default, deserialize_with = "value")]
     pub config: Value,
     /// Options of the environment by name.
-    #[serde(default, deserialize_with = "document::map")]
+    #[serde(default, deserialize_with = "map")]
     pub options: Map<String, Value>,
     /// Threads that step them; as many as pay off if nil. Results do not depend on it.
     #[serde(default)]
     pub threads: Option<usize>,
+}
+
+fn value<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Value, D::Error> {
+    Document::deserialize(deserializer).map(|Document(value)| value)
+}
+
+fn map<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Map<String, Value>, D::Error> {
+    match value(deserializer)? {
+        Value::Object(map) => Ok(map),
+        Value::Null => Ok(Map::new()),
+        other => Err(D::Error::custom(format!("{other}: expected a map"))),
+    }
 }
 
 const fn one() -> usize {

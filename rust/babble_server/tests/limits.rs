@@ -11,6 +11,7 @@ use serving::{Anything, Client, Fault, PATIENCE, Running, fault, reach, read, re
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio::time::timeout;
+use tokio_tungstenite::tungstenite::client::IntoClientRequest;
 use tokio_tungstenite::tungstenite::http::HeaderValue;
 use tokio_tungstenite::tungstenite::{Error, Message};
 
@@ -156,6 +157,31 @@ async fn a_client_that_never_reads_is_dropped_and_holds_up_nobody() {
     running.ended().await;
 }
 
+/// The system ends such a connection, where it can.
+#[cfg(target_os = "linux")]
+#[tokio::test]
+async fn a_reader_of_pages_that_never_reads_is_dropped() {
+    let running = Running::start(&["--ping-seconds", "0.2"]).await;
+    let free = running.server.connections.available_permits();
+    let mut stream = TcpStream::connect(running.address).await.unwrap();
+    // Requests until the server has no more room for replies, and then none for requests.
+    let began = Instant::now();
+    let page = b"GET /openapi.json HTTP/1.1\r\nHost: localhost\r\n\r\n".repeat(100);
+    loop {
+        assert!(began.elapsed() < PATIENCE, "the connection goes on");
+        let written = timeout(Duration::from_millis(100), stream.write_all(&page)).await;
+        if let Ok(Err(_reset)) = written {
+            break;
+        }
+    }
+    // The listener holds one for the next client.
+    while running.server.connections.available_permits() + 1 < free {
+        assert!(began.elapsed() < PATIENCE, "its place is kept");
+        tokio::time::sleep(Duration::from_millis(5)).await;
+    }
+    running.ended().await;
+}
+
 #[tokio::test]
 async fn what_cannot_be_interrupted_is_short() {
     let running = Running::start(&[]).await;
@@ -216,6 +242,24 @@ async fn get(running: &Running, path: &str, headers: &str) -> String {
     let head = format!("GET {path} HTTP/1.1\r\nConnection: close\r\n{headers}\r\n");
     stream.write_all(head.as_bytes()).await.unwrap();
     answer(&mut stream).await
+}
+
+#[tokio::test]
+async fn the_status_page_names_the_environment_that_is_played() {
+    let running = Running::start(&[]).await;
+    let url = format!("ws://{}/ws", running.address);
+    let mut client = Client::connect_with(running.address, url.into_client_request().unwrap())
+        .await
+        .unwrap();
+    for env in ["BabbleReach-v0", "BabbleGrasp-v0"] {
+        let reset = json!({"type": "reset", "data": {"env": env}});
+        client.send(Message::Text(reset.to_string().into())).await;
+        let shown = client.next().await.unwrap().unwrap().into_text().unwrap();
+        assert!(shown.contains("observation"), "{shown}");
+        let page = get(&running, "/", "Host: localhost\r\n").await;
+        assert!(page.contains(&format!("<td>{env}<td>1<td>")), "{page}");
+    }
+    running.ended().await;
 }
 
 #[tokio::test]

@@ -325,7 +325,7 @@ async fn what_is_made_wrongly_can_be_made_again() {
         (with("config", json!("/etc/passwd")), "/etc/passwd"),
         (with("config", json!({"physic": 1})), "physic"),
         (with("config", json!([])), "config"),
-        (with_body(0, "make", &nan), "numbers must be finite"),
+        (with_body(0, "make", &nan), "NaN is not finite"),
         (with("options", json!({"reward": 1})), "reward"),
         (with("options", json!({"rewardd": "sparse"})), "reward"),
         (

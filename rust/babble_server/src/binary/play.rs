@@ -150,7 +150,7 @@ async fn make(
         tracing::info!(
             session = entry.admitted.name,
             client = %client,
-            env = entry.admitted.env,
+            env = entry.admitted.env(),
             envs = entry.admitted.envs,
             "made"
         );
@@ -198,7 +198,7 @@ fn made(hold: &Hold, server: &Server) -> Made {
         resume_s: limits.resume_time.as_secs_f64(),
         last: hold.playing.last,
         version: env!("CARGO_PKG_VERSION").to_owned(),
-        env: hold.entry.admitted.env.clone(),
+        env: hold.entry.admitted.env(),
         task: session.map_or_else(String::new, |session| session.entry.name.to_owned()),
         num_envs: hold.entry.admitted.envs,
         autoreset: session.map_or_else(String::new, |session| session.autoreset.to_string()),

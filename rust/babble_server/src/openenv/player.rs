@@ -67,6 +67,12 @@ impl Player {
         }
     }
 
+    /// Id of the environment.
+    #[must_use]
+    pub fn env(&self) -> &str {
+        &self.session.env
+    }
+
     /// Steps of the episode so far.
     #[must_use]
     pub fn steps(&self) -> u64 {

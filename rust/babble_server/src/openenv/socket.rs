@@ -30,7 +30,7 @@ pub(crate) async fn play(mut connection: Connection, server: Arc<Server>) {
         Ok(Ok(playing)) => {
             let admitted = Arc::clone(&playing.admission.admitted);
             let session = &admitted.name;
-            tracing::info!(session, client = %admitted.client, env = admitted.env, "made for OpenEnv");
+            tracing::info!(session, client = %admitted.client, env = admitted.env(), "made for OpenEnv");
             let ended = follow(&mut connection, &server, playing).await;
             let reason = ended
                 .as_ref()
@@ -123,6 +123,7 @@ fn answer(playing: &mut Playing, server: &Server, text: &str) -> Result<Option<S
     };
     let Some(reply) = reply else { return Ok(None) };
     let admitted = &playing.admission.admitted;
+    admitted.plays(playing.player.env());
     // A step adds one, and a reset begins at none.
     let steps = playing.player.steps().saturating_sub(before);
     admitted.steps.fetch_add(steps, Ordering::Relaxed);

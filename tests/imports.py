@@ -62,7 +62,8 @@ class Module:
         self.children = set(MODULE.findall(code))
         self.items = set(ITEM.findall(code))
         uses = list(USE.finditer(code))
-        self.body = USE.sub("", code)
+        # A declaration names a module, and does not use it.
+        self.body = MODULE.sub("", USE.sub("", code))
         self.exports = [leaf for use in uses if use[1] for leaf in leaves(use[2])]
         self.imports = [leaf for use in uses if not use[1] for leaf in leaves(use[2])]
         folder = path.parent if path.stem in {"lib", "mod"} else path.with_suffix("")

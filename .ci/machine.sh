@@ -81,6 +81,10 @@ ensure_lab() {
         shout "the lab needs Node 20.19 or newer, and this is $(node --version): going on without the lab"
         return 1
     }
+    [[ -d lab/node_modules ]] || npm view preact version >/dev/null 2>&1 || {
+        shout "npm reaches no registry: going on without the lab"
+        return 1
+    }
 }
 
 # Prints a browser for the lab's tests.

@@ -16,6 +16,9 @@ STAMPS := $(VENV)/stamps
 FRAMEWORKS := .venv-frameworks
 FRAMEWORK_SETS := learners rllib lerobot openenv
 PEERS := .venv-bench
+LESSONS := build/lessons
+# A wheel of this checkout; `make lessons WHEEL=dist/name.whl` takes one that is there.
+WHEEL := build/wheel
 
 # One interpreter for every build of pyo3, so that none undoes another.
 export PYO3_PYTHON := $(CURDIR)/$(BIN)/python
@@ -26,7 +29,7 @@ EXTENSION_SOURCES := Cargo.toml Cargo.lock $(shell find rust -type f -not -name 
 	$(foreach folder,$(NOT_IN_EXTENSION),-not -path '*/$(folder)/*'))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo serve pictures test test-rust test-python slow soak fuzz golden-native wasm lab-engine lab-page lab lab-zip test-lab lint lint-rust \
+.PHONY: help setup demo serve pictures test test-rust test-python slow soak fuzz golden-native wasm lab-engine lab-page lab lab-zip test-lab lessons lint lint-rust \
 	lint-python lint-workflows deny bench microbench frameworks results constraints audit-export clean
 
 help: ## List the targets
@@ -63,6 +66,12 @@ slow: setup ## Run the slow tests (ten minutes)
 	$(BIN)/python -m pytest -m slow
 	$(MAKE) lab-page
 	cd lab && npm run browser:long
+	$(MAKE) $(LESSONS)/sb3/installed
+	$(LESSONS)/sb3/bin/python docs/lessons/build.py --slow
+
+# LESSON holds names: `make lessons LESSON=2-muscles`. Both versions of all are executed otherwise.
+lessons: $(LESSONS)/figures/installed ## Execute the lessons against the wheel, without a network, into build/lessons
+	$(LESSONS)/figures/bin/python docs/lessons/build.py $(LESSON)
 
 soak: setup ## Play both tasks at random, ten million steps each, in Rust and Python (45 minutes)
 	cargo test --release --test soak -- --ignored --nocapture
@@ -192,13 +201,21 @@ $(STAMPS)/extension: $(STAMPS)/dependencies $(EXTENSION_SOURCES)
 	env -u CONDA_PREFIX VIRTUAL_ENV='$(CURDIR)/$(VENV)' $(BIN)/maturin develop --release --features toy
 	@touch $@
 
-# The package as users install it, a wheel, beside what each set of frameworks pins. uv downloads a Python
-# 3.12 if none is here.
-$(FRAMEWORKS)/wheel: $(STAMPS)/extension $(shell find gym_babble -name '*.py')
+# The package as users install it.
+build/wheel: $(STAMPS)/extension $(shell find gym_babble -name '*.py')
 	rm -rf $@
 	$(BIN)/maturin build --release --out $@
 
-$(FRAMEWORKS)/%/installed: .ci/frameworks-%.txt $(FRAMEWORKS)/wheel
+# Beside what each set of frameworks pins. uv downloads a Python 3.12 if none is here.
+$(FRAMEWORKS)/%/installed: .ci/frameworks-%.txt $(WHEEL)
 	$(BIN)/uv venv --quiet --allow-existing --python "$$(source .ci/machine.sh; python_of 3.12 || echo 3.12)" $(@D)
-	$(BIN)/uv pip install --quiet --python $(@D)/bin/python --reinstall-package gym-babble -r $< $(FRAMEWORKS)/wheel/*.whl
+	$(BIN)/uv pip install --quiet --python $(@D)/bin/python --reinstall-package gym-babble -r $< "$$(find $(WHEEL) -name '*.whl')"
+	@touch $@
+
+# The wheel with one of its extras beside `figures`, and what executes a notebook.
+$(LESSONS)/%/installed: constraints.txt $(WHEEL)
+	$(BIN)/uv venv --quiet --allow-existing --python $(BIN)/python $(@D)
+	wheel=$$(find $(abspath $(WHEEL)) -name '*.whl') && $(BIN)/uv pip install --quiet --python $(@D)/bin/python \
+		--constraints constraints.txt --reinstall-package gym-babble \
+		"gym-babble[figures,$*] @ file://$$wheel" ipykernel jupytext nbclient
 	@touch $@

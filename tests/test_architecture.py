@@ -80,7 +80,7 @@ LAYERS = (
         "sb3",
         "rllib",
     ),
-    *("lab", "study", "viz", "paper", "report", "cli"),
+    *("lab", "study", "viz", "paper", "report", "course", "cli"),
 )
 
 HEAVY_MODULES = {

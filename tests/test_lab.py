@@ -14,7 +14,8 @@ import pytest
 from gym_babble import _core
 from gym_babble.cli import main
 from gym_babble.errors import ConfigError
-from gym_babble.lab.checking import COLUMNS, Checked, as_csv, check_record
+from gym_babble.files.handed_in import as_csv
+from gym_babble.lab.checking import COLUMNS, Checked, check_record
 from gym_babble.lab.serving import page_server
 
 
@@ -219,7 +220,9 @@ def test_files_that_cannot_be_read_have_rows(tmp_path):
 def test_texts_of_a_record_command_neither_the_terminal_nor_a_spreadsheet(tmp_path, record):
     checked = check_record(written(tmp_path, {**record, "name": "\x1b[2J=1+1\n"}))
     assert checked.name.isprintable()
-    rows = [*csv.reader(io.StringIO(as_csv([Checked(file="a", name="=HYPERLINK(1)")])))]
+    rows = [
+        *csv.reader(io.StringIO(as_csv(COLUMNS, [Checked(file="a", name="=HYPERLINK(1)").row()])))
+    ]
     assert rows[0] == [*COLUMNS]
     assert rows[1][1] == "'=HYPERLINK(1)"
 

@@ -10,6 +10,7 @@ import typer
 from gym_babble._core import __version__
 from gym_babble.cli.babble import babble
 from gym_babble.cli.compare import compare
+from gym_babble.cli.course import course
 from gym_babble.cli.doctor import doctor
 from gym_babble.cli.evaluate import evaluate
 from gym_babble.cli.export import export
@@ -46,6 +47,7 @@ app.command(
 app.add_typer(reproduce, name="reproduce")
 app.add_typer(study, name="study")
 app.add_typer(lab, name="lab")
+app.add_typer(course, name="course")
 
 # The base class of typer's complaints about arguments; its name differs between versions.
 UsageError: Any = typer.BadParameter.__bases__[0]

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from gym_babble import _core
 from gym_babble.checks import check_threads
+from gym_babble.files.handed_in import UnreadableError, one_line, read_handed_in
 from gym_babble.lab import POLICIES
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
-__all__ = ["Checked", "as_csv", "check_record"]
+__all__ = ["COLUMNS", "Checked", "check_record"]
 
-MOST_BYTES = 4 * 2**20
-"""Bytes of a record, at most."""
 COLUMNS = ("file", "name", "lesson", "tasks", "answers", "commands", "same hash", "verdict")
 
 
@@ -81,20 +77,13 @@ def check_record(path: Path, *, seconds: float = 120.0, threads: int | None = No
         seconds: How long running it again may take.
         threads: Threads that work; all processors if None.
     """
-    file = _shown(path.name)
+    file = one_line(path.name)
     try:
-        with path.open("rb") as opened:
-            data = opened.read(MOST_BYTES + 1)
-        if len(data) > MOST_BYTES:
-            return Checked(file=file, problem=f"it has more than {MOST_BYTES:,} bytes")
-        found = json.loads(
-            _core.check_record(data.decode(), _policies(), seconds, check_threads(threads))
-        )
-    except UnicodeDecodeError:
-        return Checked(file=file, problem="it is no text in UTF-8")
-    except OSError as error:
-        return Checked(file=file, problem=f"it cannot be read: {error.strerror}")
-    lesson, name, problem = (_shown(found[key] or "") for key in ("lesson", "name", "problem"))
+        text = read_handed_in(path)
+    except UnreadableError as error:
+        return Checked(file=file, problem=str(error))
+    found = json.loads(_core.check_record(text, _policies(), seconds, check_threads(threads)))
+    lesson, name, problem = (one_line(found[key] or "") for key in ("lesson", "name", "problem"))
     return Checked(
         file=file,
         name=name,
@@ -107,21 +96,6 @@ def check_record(path: Path, *, seconds: float = 120.0, threads: int | None = No
     )
 
 
-def as_csv(checked: Sequence[Checked]) -> str:
-    """A table for spreadsheets. Before what these take for a formula stands an apostrophe."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    for one in checked:
-        writer.writerow([f"'{cell}" if cell[:1] in "=+-@" and cell else cell for cell in one.row()])
-    return text.getvalue()
-
-
 def _policies() -> dict[str, bytes]:
     """The networks that the lab knows by name."""
     return {path.stem: path.read_bytes() for path in sorted(POLICIES.glob("*.safetensors"))}
-
-
-def _shown(text: str) -> str:
-    """A text of somebody's file on one line, without letters that would command the terminal."""
-    return "".join(letter if letter.isprintable() else " " for letter in text)[:300]

@@ -22,6 +22,7 @@ READOUTS = "python docs/experiments/readouts.py"
 INPUTS = '"obstacle, Eq. 7" "obstacle, Hebb" "eye, Eq. 7" "eye, Hebb"'
 PAIRS = '"obstacle x eye, Eq. 7" "obstacle x eye, Hebb"'
 CHANGED_BODY = "python docs/experiments/changed_body.py"
+CHAIN = "python docs/experiments/grasp_chain.py"
 SOLVED = ("BabbleReachGoal-v0", "BabbleGrasp-v0")
 
 STORES: dict[str, dict[str, str]] = {
@@ -84,8 +85,8 @@ STORES: dict[str, dict[str, str]] = {
     "convergence": {"counts": "python docs/experiments/convergence.py"},
     "sides": {"scripted": "python docs/experiments/grasp_sides.py"},
     "chain": {
-        "paper": "python docs/experiments/grasp_chain.py",
-        "icub": "python docs/experiments/grasp_chain.py --config icub --babbles 1000 --trials 0 --more 2",
+        "paper": CHAIN,
+        "icub": f"{CHAIN} --config icub --babbles 1000 --trials 0 --more 2",
     },
     "basin": {"elbow": "python docs/experiments/grasp_basin.py"},
     "movements": {"rows": "python docs/experiments/grasp_movements.py"},

@@ -89,7 +89,7 @@ def test_every_experiment_runs_and_is_listed(repository):
     found = {path.name for path in folder.glob("*.py")}
     assert found == RUNS.keys()
     listed = re.findall(
-        r"^\| \[(\w+\.py)\]\(\1\) \|", (folder / "README.md").read_text("utf-8"), re.M
+        r"^\| \[(\w+\.py)\]\(\1\) \|", (folder / "README.md").read_text("utf-8"), re.MULTILINE
     )
     assert sorted(listed) == sorted(found)
 

@@ -23,6 +23,7 @@ from gym_babble.study.store import Store, StoredRun
 from gym_babble.study.trainers.sb3_models import without_learning
 from gym_babble.viz.charts import draw_bands
 from gym_babble.viz.style import row_of_axes, save, styled
+from results import course
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -52,12 +53,13 @@ def document() -> dict[str, Any]:
 
 
 def run() -> None:
-    """Does what is missing of the study, and writes its picture and its agents."""
+    """Does what is missing of the study; writes its picture, its agents, the lessons' numbers."""
     program = Path(sys.executable).with_name("gym-babble")
     words = ("study", "run", NAME, "--out", str(FOLDER))
     subprocess.run([program, *words], check=True, stdout=subprocess.DEVNULL)
     save(curves(document()), PICTURE)
     copy_agents()
+    course.write(FOLDER)
 
 
 @styled

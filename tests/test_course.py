@@ -20,6 +20,7 @@ from gym_babble.course.answers import Choice, Function, Number, Numbers, Observe
 from gym_babble.course.checking import check_handed_in
 from gym_babble.course.exercise import Exercise, right, wrong
 from gym_babble.course.lessons import EXERCISES, LESSONS
+from gym_babble.course.settings import Settings
 from gym_babble.errors import ConfigError
 
 
@@ -352,6 +353,8 @@ def observed(kind):
         return within(kind.shape)
     if isinstance(kind, Choice):
         return st.sampled_from(kind.choices)
+    if isinstance(kind, Settings):
+        return st.sampled_from(["{}", '{"sigma": "wide"}', '{"sizes": [1], "readout": {}}'])
     if isinstance(kind, Function):
         return within((len(kind.inputs()), *kind.shape))
     return st.fixed_dictionaries({name: within(shape) for name, shape in kind.parts.items()})

@@ -47,9 +47,9 @@ serve: ## Build the server, which needs no Python, and start it
 
 PICTURES := docs/images
 pictures: setup ## Draw the pictures of README and docs again, without those of `make bench` (some minutes)
-	$(BIN)/python examples/film.py --out $(PICTURES)/babble.gif
-	$(BIN)/python examples/film_chain.py --out $(PICTURES)/chain.gif --strip $(PICTURES)/chain.png
-	$(BIN)/python examples/grasp_basin.py --figure $(PICTURES)/basin.png
+	$(BIN)/python docs/experiments/film_babble.py --out $(PICTURES)/babble.gif
+	$(BIN)/python docs/experiments/film_chain.py --out $(PICTURES)/chain.gif --strip $(PICTURES)/chain.png
+	$(BIN)/python docs/experiments/grasp_basin.py --figure $(PICTURES)/basin.png
 	for figure in fig2 fig4 fig5 fig7 fig8 sight; do \
 		$(BIN)/gym-babble reproduce $$figure --out $(PICTURES)/$$figure.png || exit 1; done
 	$(BIN)/python -m results.changed_body
@@ -161,6 +161,7 @@ microbench: setup ## Measure parts: criterion in Rust, pytest-benchmark in Pytho
 frameworks: $(foreach set,$(FRAMEWORK_SETS),$(FRAMEWORKS)/$(set)/installed) ## Run the snippets of docs/frameworks.md in environments of their own (12 GB)
 	$(foreach set,$(FRAMEWORK_SETS),$(FRAMEWORKS)/$(set)/bin/python .ci/frameworks.py $(set) &&) true
 	$(FRAMEWORKS)/learners/bin/python .ci/rl_zoo3_settings.py
+	$(FRAMEWORKS)/learners/bin/python examples/torchrl_ppo.py --steps 16384
 	$(FRAMEWORKS)/rllib/bin/python examples/rllib_ppo.py --iterations 2 --every 1
 	$(FRAMEWORKS)/rllib/bin/pytest -s tests/test_rllib.py tests/test_study_ray.py
 	$(FRAMEWORKS)/openenv/bin/pytest tests/test_openenv_client.py

@@ -1,7 +1,8 @@
 """PPO in one file, in CleanRL's style, on the native batch: no framework but PyTorch.
 
-An ended episode restarts at the next step (Gymnasium's default), whose action is ignored: that step
-is not learnt from. The value of a truncated episode's last observation stands in for its future.
+You learn each line of the algorithm, and what becomes of episodes that end in a batch. An ended one
+restarts at the next step (Gymnasium's default), whose action is ignored: that step is not learnt
+from. The value of a truncated episode's last observation stands in for its future.
 """
 
 import argparse
@@ -26,15 +27,9 @@ torch.manual_seed(args.seed)
 torch.set_num_threads(1)
 envs = gym.make_vec(args.env_id, num_envs=args.num_envs, obs="flat")
 senses, width = envs.single_observation_space.shape[0], envs.single_action_space.shape[0]
-
-
-def network(outputs: int) -> nn.Module:
-    """Two hidden layers."""
-    layers = (nn.Linear(senses, 128), nn.ReLU(), nn.Linear(128, 128), nn.ReLU())
-    return nn.Sequential(*layers, nn.Linear(128, outputs))
-
-
-actor, critic = network(width), network(1)
+hidden = lambda: (nn.Linear(senses, 128), nn.ReLU(), nn.Linear(128, 128), nn.ReLU())  # noqa: E731
+actor = nn.Sequential(*hidden(), nn.Linear(128, width))
+critic = nn.Sequential(*hidden(), nn.Linear(128, 1))
 log_std = nn.Parameter(torch.full((width,), -0.5))
 parameters = [*actor.parameters(), *critic.parameters(), log_std]
 optimizer = torch.optim.Adam(parameters, lr=2.5e-3)
@@ -66,9 +61,8 @@ for update in range(updates):
         delta = rewards[t] + gamma * nexts[t] - values[t]
         following = advantages[t] = delta + gamma * lam * (1 - ends[t]) * following
     learnt = live.flatten().bool()
-    batch = [
-        x.flatten(0, 1)[learnt] for x in (obs, actions, logprobs, advantages, advantages + values)
-    ]
+    columns = (obs, actions, logprobs, advantages, advantages + values)
+    batch = [x.flatten(0, 1)[learnt] for x in columns]
     for _ in range(epochs):
         for rows in torch.randperm(len(batch[0])).chunk(minibatches):
             o, a, old, advantage, target = (x[rows] for x in batch)

@@ -1,6 +1,6 @@
-"""Plays an episode by OpenEnv's protocol: JSON over a WebSocket, with no package but `websockets`.
+"""An episode by OpenEnv's protocol: JSON over a WebSocket, with no package but `websockets`.
 
-Start a server first: `gym-babble serve`.
+You learn the messages of an episode. Start a server first: `gym-babble serve`.
 """
 
 import argparse

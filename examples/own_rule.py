@@ -1,9 +1,10 @@
 """A learning rule of your own, in NumPy: Eq. 7 of the paper beside plain Hebb, and Oja's rule.
 
-The agent babbles once for each rule and is tested on cases of Table I. Eq. 7 gets the paper's
-success; without its averages, every input neuron is tied to every movement that was ever legal.
+You learn that a rule is a function of activities and weights, which returns the weights' changes.
+Eq. 7 gets the paper's success. Without its averages, every input neuron is tied to every movement
+that was ever legal.
 
-python examples/own_rule.py              # 20,000 legal movements for each rule: about a minute each
+python examples/own_rule.py --movements 2000    # 20,000 if not given: about a minute each
 """
 
 import argparse

@@ -1,6 +1,7 @@
-"""PPO from RLlib learns to grasp from BabbleGrasp's Dict of senses, in RLlib's new API stack.
+"""PPO from RLlib learns to grasp, in RLlib's new API stack, from a Dict of senses.
 
-RLlib pins its own Gymnasium and brings much else: `make frameworks` runs this apart.
+You learn to make RLlib step native batches, and to test its policy on held-out cases. RLlib pins
+its own Gymnasium: install it apart, with `pip install 'gym-babble[rllib]'`.
 """
 
 import argparse
@@ -36,12 +37,8 @@ class Policy(DefaultPPOTorchRLModule):
         torch.nn.init.constant_(self.pi.log_std, -0.5)
 
 
-networks = DefaultModelConfig(
-    fcnet_hiddens=[128, 128],
-    fcnet_activation="relu",
-    free_log_std=True,
-    vf_share_layers=False,
-)
+hidden = {"fcnet_hiddens": [128, 128], "fcnet_activation": "relu"}
+networks = DefaultModelConfig(**hidden, free_log_std=True, vf_share_layers=False)
 config = (
     native_batch(PPOConfig(), arguments.env_id, num_envs=128)
     .env_runners(num_env_runners=arguments.runners)

@@ -1,33 +1,21 @@
-// Plays an episode over the binary protocol, without a package, in Node 22 or newer (in Node 20 with
-// --experimental-websocket). Start a server first, with `gym-babble serve`, then
+// An episode over the server's binary protocol from JavaScript, without a package.
+//
+// You learn what a client in any language needs: a WebSocket, MessagePack, and the operations of
+// docs/protocol.md. It runs in Node 22 or newer (in Node 20 with --experimental-websocket). Start a
+// server first, with `gym-babble serve`, then
 //   node examples/server_client.mjs [ws://127.0.0.1:8741] [BabbleReach-v0] [seed]
 
-/** MessagePack of a value: numbers as float64 or, if whole, as uint64. */
-function pack(value, bytes = []) {
-  const number = (code, size, write) => {
-    const view = new DataView(new ArrayBuffer(size))
-    write(view)
-    bytes.push(code, ...new Uint8Array(view.buffer))
-  }
-  const length = (code, n) => number(code, 4, (view) => view.setUint32(0, n))
-  if (value === null || typeof value === 'boolean') bytes.push({ null: 0xc0, false: 0xc2, true: 0xc3 }[value])
-  else if (Number.isSafeInteger(value) && value >= 0) number(0xcf, 8, (view) => view.setBigUint64(0, BigInt(value)))
-  else if (typeof value === 'number') number(0xcb, 8, (view) => view.setFloat64(0, value))
-  else if (typeof value === 'string') {
+/** The bytes of a MessagePack: of whole numbers, texts, binaries, lists and maps. */
+function pack(value) {
+  const big = (code, n) => [code, n >>> 24, (n >>> 16) & 255, (n >>> 8) & 255, n & 255]
+  if (typeof value === 'number') return big(0xce, value)
+  if (typeof value === 'string') {
     const text = new TextEncoder().encode(value)
-    length(0xdb, text.length)
-    bytes.push(...text)
-  } else if (ArrayBuffer.isView(value)) {
-    length(0xc6, value.byteLength)
-    bytes.push(...new Uint8Array(value.buffer, value.byteOffset, value.byteLength))
-  } else {
-    length(Array.isArray(value) ? 0xdd : 0xdf, Object.keys(value).length)
-    for (const [name, item] of Object.entries(value)) {
-      if (!Array.isArray(value)) pack(name, bytes)
-      pack(item, bytes)
-    }
+    return [...big(0xdb, text.length), ...text]
   }
-  return bytes
+  if (ArrayBuffer.isView(value)) return [...big(0xc6, value.byteLength), ...new Uint8Array(value.buffer)]
+  if (Array.isArray(value)) return [...big(0xdd, value.length), ...value.flatMap(pack)]
+  return [...big(0xdf, Object.keys(value).length), ...Object.entries(value).flat().flatMap(pack)]
 }
 
 /** The value of a MessagePack: binaries are Uint8Array. */
@@ -56,44 +44,33 @@ function unpack(buffer) {
   return value()
 }
 
-/** A session; operations and bodies are those of docs/protocol.md. */
-class Session {
-  static async open(url, make) {
-    const session = new Session()
-    const socket = (session.socket = new WebSocket(`${url}/ws`, 'gym-babble.v1'))
-    socket.binaryType = 'arraybuffer'
-    socket.onopen = () => session.resolve()
-    socket.onmessage = ({ data }) => session.resolve(unpack(data))
-    socket.onclose = ({ reason }) => session.reject(new Error(`closed ${reason}`))
-    await session.next()
-    session.made = await session.ask('make', make)
-    return session
-  }
+const [url = 'ws://127.0.0.1:8741', env = 'BabbleReach-v0', seed = 0] = process.argv.slice(2)
+const socket = new WebSocket(`${url}/ws`, 'gym-babble.v1')
+socket.binaryType = 'arraybuffer'
+const answer = () =>
+  new Promise((resolve, reject) => {
+    socket.onopen = resolve
+    socket.onmessage = ({ data }) => resolve(unpack(data))
+    socket.onclose = ({ reason }) => reject(new Error(`closed ${reason}`))
+  })
+await answer()
 
-  next() {
-    return new Promise((resolve, reject) => Object.assign(this, { resolve, reject }))
-  }
-
-  /** The body of the reply; `make` has the id 0, and those that follow grow by one. */
-  async ask(operation, body = {}) {
-    this.id = (this.id ?? -1) + 1
-    this.socket.send(new Uint8Array(pack([this.id, operation, body])))
-    const [, result, reply] = await this.next()
-    if (result === 'error') throw new Error(`${reply.kind}: ${reply.message}`)
-    return reply
-  }
+let id = 0
+/** The body of the reply to an operation; ids count from 0. */
+async function ask(operation, body = {}) {
+  socket.send(new Uint8Array(pack([id++, operation, body])))
+  const [, result, reply] = await answer()
+  if (result === 'error') throw new Error(`${reply.kind}: ${reply.message}`)
+  return reply
 }
 
-const [url = 'ws://127.0.0.1:8741', env = 'BabbleReach-v0', seed = 0] = process.argv.slice(2)
-const session = await Session.open(url, { env, options: { control: 'posture' } })
-const { spec } = session.made
-let { now } = await session.ask('reset', { seeds: [Number(seed)] })
-const action = new Float32Array(spec.action.labels.length)
-let total = 0
-let steps = 0
+const { spec } = await ask('make', { env, options: { control: 'posture' } })
+let { now } = await ask('reset', { seeds: [Number(seed)] })
+const actions = new Float32Array(spec.action.labels.length)
+let [total, steps] = [0, 0]
 for (; !now.terminated[0] && !now.truncated[0]; steps++) {
-  ;({ now } = await session.ask('step', { actions: action }))
+  ;({ now } = await ask('step', { actions }))
   total += new Float64Array(now.reward.buffer)[0]
 }
 console.log(`${spec.outcomes[now.outcome[0]]} after ${steps} steps, return ${total}`)
-await session.ask('close')
+await ask('close')

@@ -31,8 +31,9 @@ class PageError(ValueError):
 
 
 def names() -> list[str]:
-    """README and the pages of docs."""
-    return ["README.md", *(f"docs/{path.name}" for path in sorted((ROOT / "docs").glob("*.md")))]
+    """README and the pages of docs, also how to do a task."""
+    pages = [path for folder in ("docs", "docs/how-to") for path in (ROOT / folder).glob("*.md")]
+    return ["README.md", *sorted(str(path.relative_to(ROOT)) for path in pages)]
 
 
 def read(name: str) -> str:

@@ -15,13 +15,14 @@ FOLDER = ROOT / "results"
 
 TABLE1 = "gym-babble reproduce table1 --seeds 5"
 REACHING = "--env-id BabbleReachPattern-v0"
-HOLD = "python examples/grasp_sizes.py"
+HOLD = "python docs/experiments/grasp_sizes.py"
 STEPS = "--env-id BabbleReach-v0"
 GRASPING = "--env-id BabbleGrasp-v0"
-READOUTS = "python examples/readouts.py"
+READOUTS = "python docs/experiments/readouts.py"
 INPUTS = '"obstacle, Eq. 7" "obstacle, Hebb" "eye, Eq. 7" "eye, Hebb"'
 PAIRS = '"obstacle x eye, Eq. 7" "obstacle x eye, Hebb"'
-CHANGED_BODY = "python examples/changed_body.py"
+CHANGED_BODY = "python docs/experiments/changed_body.py"
+CHAIN = "python docs/experiments/grasp_chain.py"
 SOLVED = ("BabbleReachGoal-v0", "BabbleGrasp-v0")
 
 STORES: dict[str, dict[str, str]] = {
@@ -46,16 +47,14 @@ STORES: dict[str, dict[str, str]] = {
         "grasp-scripted": f"gym-babble evaluate scripted {GRASPING}",
     },
     "own": {
-        "curves": "python examples/curves.py",
+        "curves": "python examples/own_agent.py",
         "rules": "python examples/own_rule.py --movements 2000",
     },
-    "own_chain": {
-        "chain": "python examples/own_chain.py",
-        "chunk": "python examples/own_chunk.py",
-    },
-    "solved": {id_: f"python examples/solvable.py --ids {id_}" for id_ in SOLVED},
-    "sensitivity": {"rows": "python examples/sensitivity.py"},
-    "vote": {"rows": "python examples/obstacle_alone.py"},
+    "own_chain": {"chain": "python docs/experiments/own_chain.py"},
+    "own_chunk": {"rates": "python examples/own_chunk.py"},
+    "solved": {id_: f"python docs/experiments/solvable.py --ids {id_}" for id_ in SOLVED},
+    "sensitivity": {"rows": "python docs/experiments/sensitivity.py"},
+    "vote": {"rows": "python docs/experiments/obstacle_alone.py"},
     "readouts": {
         "paper": f"{READOUTS} --bodies paper --networks {INPUTS} {PAIRS}",
         "icub": f"{READOUTS} --bodies icub --networks {PAIRS}",
@@ -82,22 +81,22 @@ STORES: dict[str, dict[str, str]] = {
         "closed": f"{HOLD} --reflex 90 90 --diameters 2.4",
         "closed-rapier": f"{HOLD} --reflex 90 90 --engine rapier --diameters 2.4",
     },
-    "periods": {"rows": "python examples/grasp_learning_period.py"},
-    "convergence": {"counts": "python examples/convergence.py"},
-    "sides": {"scripted": "python examples/grasp_sides.py"},
+    "periods": {"rows": "python docs/experiments/grasp_learning_period.py"},
+    "convergence": {"counts": "python docs/experiments/convergence.py"},
+    "sides": {"scripted": "python docs/experiments/grasp_sides.py"},
     "chain": {
-        "paper": "python examples/grasp_chain.py",
-        "icub": "python examples/grasp_chain.py --config icub --babbles 1000 --trials 0 --more 2",
+        "paper": CHAIN,
+        "icub": f"{CHAIN} --config icub --babbles 1000 --trials 0 --more 2",
     },
-    "basin": {"elbow": "python examples/grasp_basin.py"},
-    "movements": {"rows": "python examples/grasp_movements.py"},
-    "carry": {"chain": "python examples/grasp_carry.py"},
-    "interference": {"rows": "python examples/grasp_interference.py --seeds 2"},
+    "basin": {"elbow": "python docs/experiments/grasp_basin.py"},
+    "movements": {"rows": "python docs/experiments/grasp_movements.py"},
+    "carry": {"chain": "python docs/experiments/grasp_carry.py"},
+    "interference": {"rows": "python docs/experiments/grasp_interference.py --seeds 2"},
 }
 """For each store its runs, each with its command; `--json` is added."""
 
 TUNING = ROOT / "docs" / "studies" / "tuning"
-"""Folder of what examples/tune.py wrote."""
+"""Folder of what docs/experiments/tune.py wrote."""
 
 
 def path_of(name: str) -> Path:

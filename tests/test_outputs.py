@@ -94,7 +94,7 @@ def test_a_file_that_cannot_be_written_is_found_before_learning(
     "words",
     [
         ("film.py", "--out"),
-        ("ppo_reach.py", "--save"),
+        ("ppo.py", "--save"),
     ],
     ids=" ".join,
 )

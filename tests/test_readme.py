@@ -15,7 +15,8 @@ IMAGES = "docs/images"
 @pytest.fixture(scope="module")
 def pages(repository):
     """The text of each page, by its path in the repository."""
-    found = [*repository.glob("*.md"), *(repository / "docs").glob("*.md")]
+    folders = (".", "docs", "docs/how-to", "docs/experiments")
+    found = [path for folder in folders for path in (repository / folder).glob("*.md")]
     return {path.relative_to(repository): path.read_text(encoding="utf-8") for path in found}
 
 

@@ -82,7 +82,7 @@ def test_a_path_leads_to_a_value(path, value):
 
 
 def test_a_measured_store_has_what_its_command_prints(tmp_path, monkeypatch):
-    commands = {"few": "python examples/grasp_sizes.py --trials 2 --diameters 2.4"}
+    commands = {"few": "python docs/experiments/grasp_sizes.py --trials 2 --diameters 2.4"}
     monkeypatch.setitem(STORES, "small", commands)
     monkeypatch.setattr(stores, "FOLDER", tmp_path)
     run.measure("small")

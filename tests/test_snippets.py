@@ -11,6 +11,7 @@ from serving import served
 from gym_babble.cli import main
 from gym_babble.remote import DEFAULT_URL
 
+FOLDERS = ("docs", "docs/how-to")
 FENCED = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 PAGES = (
     "README.md",
@@ -21,8 +22,8 @@ PAGES = (
             "beyond-the-paper",
             "environments",
             "export",
-            "extending",
             "studies",
+            *(f"how-to/own-{name}" for name in ("agent", "body", "chunk", "model", "rule")),
         )
     ),
 )
@@ -47,8 +48,8 @@ def small(code):
 
 
 def test_every_page_with_python_is_run(repository):
-    pages = [repository / "README.md", *(repository / "docs").glob("*.md")]
-    found = [str(path.relative_to(repository)) for path in pages]
+    docs = [path for folder in FOLDERS for path in (repository / folder).glob("*.md")]
+    found = [str(path.relative_to(repository)) for path in [repository / "README.md", *docs]]
     runs = {*PAGES, FRAMEWORKS, SERVED}
     assert {page for page in found if blocks(repository, page, "python")} == runs
 
@@ -98,8 +99,7 @@ def test_the_python_of_the_servers_page_runs(repository):
 
 def shell_lines(repository):
     """The commands in the docs' shell blocks and in inline code, comments cut off."""
-    pages = [*repository.glob("*.md"), *(repository / "docs").glob("*.md")]
-    for path in pages:
+    for path in (path for folder in (".", *FOLDERS) for path in (repository / folder).glob("*.md")):
         page = str(path.relative_to(repository))
         for code in blocks(repository, page, "sh", "console"):
             for line in code.replace("\\\n", " ").splitlines():

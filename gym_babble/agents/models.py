@@ -74,7 +74,7 @@ def fitted(
     if any_obs:
         forms.append(replace(arguments, options={**arguments.options, "obs": "flat"}))
     interfaces = [form.interface() for form in forms]
-    seen = model.observation_space
+    seen = _channels_last(model.observation_space)
     fitting = [i for i, found in enumerate(interfaces) if found.observation_space == seen]
     if not fitting:
         raise ConfigError(_other_space("observations", seen, interfaces[0].observation_space))
@@ -86,6 +86,16 @@ def fitted(
         _check_unnormalized(model)
     chosen = forms[fitting[0]]
     return (model if normalizer is None else NormalizedModel(model, normalizer)), chosen
+
+
+def _channels_last(space: spaces.Space[Any]) -> spaces.Space[Any]:
+    """A space with images as environments have them: models put the three colours first."""
+    if isinstance(space, spaces.Dict):
+        return spaces.Dict({name: _channels_last(part) for name, part in space.items()})
+    if isinstance(space, spaces.Box) and space.dtype == np.uint8 and space.shape[:1] == (3,):
+        low, high = (np.moveaxis(bound, 0, -1) for bound in (space.low, space.high))
+        return spaces.Box(low, high, dtype=np.uint8)
+    return space
 
 
 def _other_space(what: str, learnt: spaces.Space[Any], given: spaces.Space[Any]) -> str:

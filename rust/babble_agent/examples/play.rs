@@ -1,12 +1,12 @@
-//! Plays every agent in both tasks, without Python: `cargo run --release --example play`.
+//! Every agent in both tasks, in Rust alone: `cargo run --release --example play`.
 //!
-//! An environment is made by its id, an agent by its name; the Hebb agent babbles first.
+//! You learn to make environments and agents by name, to let the Hebb agent babble, and to play.
 
 use std::sync::Arc;
 
 use babble_agent::erased::{brain_of, learner};
 use babble_agent::{AgentError, Policy, REFERENCES, Random, predict, reference};
-use babble_env::{AnyTask, Autoreset, Config, EnvError, Executor, Outcome, make};
+use babble_env::{AnyTask, Autoreset, Config, EnvError, Executor, Options, Outcome, make};
 use serde_json::Value;
 
 pub(crate) const EPISODES: usize = 20;
@@ -19,11 +19,7 @@ const TASKS: [(&str, &str, usize); 2] = [
 pub(crate) fn main() -> Result<(), AgentError> {
     let executor = &mut Executor::new(2)?;
     for (name, id, babbles) in TASKS {
-        let task = make(
-            id,
-            Config::profile("paper")?,
-            &babble_env::Options::default(),
-        )?;
+        let task = make(id, Config::profile("paper")?, &Options::default())?;
         let mut hebb = learner(&task, brain_of(name, "paper")?, 0, Value::Null)?;
         hebb.learn(&task, babbles, executor)?;
         println!(

@@ -1,4 +1,6 @@
-//! Makes an environment by its id and options, and plays an episode with random actions.
+//! An environment in Rust alone: made by its id and options, and played with random actions.
+//!
+//! You learn to make any task of the registry, to step a batch, and to read how an episode ended.
 //!
 //! ```console
 //! cargo run --release -p babble_env --example make -- BabbleGrasp-v0 '{"control": "posture"}'

@@ -5,7 +5,7 @@ validation cases. Both are apart from the seeds (from 0) and the cases (split "t
 1,000) of what is reported. The first trial has the settings of before. A file keeps the trials; the
 same command goes on from it until a cap is reached.
 
-python examples/tune.py sac BabbleReachPattern-v0 --steps 3000
+python docs/experiments/tune.py sac BabbleReachPattern-v0 --steps 3000
 """
 
 import argparse

@@ -1,16 +1,14 @@
-"""SAC with hindsight experience replay on the goal forms of both tasks (stable-baselines3).
+"""SAC with hindsight experience replay (HER) on the goal forms of both tasks.
 
-The reward only says whether the fingertip is at the target, or the object at its goal (0), or not
-(-1). Hindsight replay treats the place that was reached as the target, and `compute_reward`
-computes the new reward.
+You learn to use a goal environment of stable-baselines3: the reward only says whether the fingertip
+is at the target, or the object at its goal (0), or not (-1), and hindsight treats the place that
+was reached as the target, for which `compute_reward` computes the new reward.
 
-In reaching there is no obstacle by default. An obstacle stands on the straight path to every
-target; with it (--obstacle), hindsight learns to reach straight into it and needs far more steps
-than these. See docs/baselines.md; on carrying, docs/beyond-the-paper.md.
+In reaching there is no obstacle by default: one stands on the straight path to every target, and
+with it (--obstacle) hindsight learns to reach into it. See docs/baselines.md.
 
-python examples/sac_her.py               # 100,000 steps: about 8 minutes on one core
-python examples/sac_her.py --env BabbleGraspGoal-v0 --out carry.zip
-python examples/grasp_carry.py --agent carry.zip          # Counts what the hand still holds.
+python examples/her.py                              # 100,000 steps: about 8 minutes on one core
+python examples/her.py --env BabbleGraspGoal-v0 --out carry.zip    # then load_agent("carry.zip")
 """
 
 import argparse

@@ -1,10 +1,10 @@
 """The film of the chain: its first babble, and how it grasps a small ball after more and more.
 
 Left, the first babble of a hand that knows nothing but its reflex, chunk by chunk as in
-examples/own_chain.py. On its right, the agent that learns from such babbles tries the same small
-ball after few babbles and after many.
+own_chain.py. On its right, the agent that learns from such babbles tries the same small ball after
+few babbles and after many.
 
-python examples/film_chain.py --out docs/images/chain.gif --strip docs/images/chain.png
+python docs/experiments/film_chain.py --out docs/images/chain.gif --strip docs/images/chain.png
 """
 
 import argparse

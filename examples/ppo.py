@@ -1,7 +1,9 @@
-"""PPO (stable-baselines3) with tuned settings on reaching: train, test on Table I, keep the model.
+"""PPO of stable-baselines3 with the package's tuned settings: train, test on Table I, keep it.
 
-python examples/ppo_reach.py                            # whole movements: 25 s with the test
-python examples/ppo_reach.py --env-id BabbleReach-v0    # step by step: about a minute
+You learn to train by one call, and to test the model on the cases that all agents are tested on.
+
+python examples/ppo.py                            # whole movements: 25 s with the test
+python examples/ppo.py --env-id BabbleReach-v0    # step by step: about a minute
 """
 
 import argparse

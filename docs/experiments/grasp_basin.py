@@ -5,7 +5,7 @@ the arm stops and the enclosure reflex closes the hand. Where the ball meets the
 from the wrist, is the only thing that differs between the rows of a size. docs/beyond-the-paper.md
 has the results.
 
-python examples/grasp_basin.py --figure docs/images/basin.png    # about a minute
+python docs/experiments/grasp_basin.py --figure docs/images/basin.png    # about a minute
 """
 
 import argparse

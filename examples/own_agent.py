@@ -1,6 +1,7 @@
 """An agent of your own, without learning: it curves away from the obstacle that it sees.
 
-gym-babble evaluate curves:Curves --env-id BabbleReachPattern-v0    # from the folder of this file
+You learn that an agent is any object with `predict`, and how to test it. The command line finds it
+too: `gym-babble evaluate own_agent:Curves`, from the folder of this file.
 """
 
 import argparse
@@ -14,6 +15,8 @@ from gym_babble import evaluate, scenarios
 class Curves:
     """Curves left or right, depending on the side on which it sees the obstacle."""
 
+    env = "BabbleReachPattern-v0"  # Where it acts.
+
     def predict(self, observation: dict[str, np.ndarray]) -> np.ndarray:
         """Returns (b1, b2), scaled to [−1, 1]."""
         azimuth, _ = observation["obstacle"]
@@ -26,7 +29,7 @@ if __name__ == "__main__":
     parser.add_argument("--cases", type=int, default=1_000, help="cases of Table I to be tested on")
     parser.add_argument("--json", action="store_true", help="print one JSON document")
     arguments = parser.parse_args()
-    result = evaluate(Curves(), "BabbleReachPattern-v0", scenarios("table1", arguments.cases))
+    result = evaluate(Curves(), cases=scenarios("table1", arguments.cases))
     low, high = result.interval("success")
     if arguments.json:
         print(json.dumps({"success": result.rate("success"), "low": low, "high": high}))

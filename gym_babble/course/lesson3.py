@@ -35,7 +35,8 @@ def _images() -> tuple[NDArray[np.uint8], ...]:
 
 def _is_red(image: NDArray[np.uint8]) -> NDArray[np.bool_]:
     r, g, b = np.moveaxis(image.astype(float), -1, 0)
-    return (r > 2 * g) & (r > 2 * b)
+    red: NDArray[np.bool_] = (r > 2 * g) & (r > 2 * b)
+    return red
 
 
 def _judge_centroid(centroids: NDArray[np.float64]) -> Finding:
@@ -180,7 +181,8 @@ CODES = ((0.0, 1.0), (0.4, 1.0), (-2.0, 0.5), (2.7, 2.0), (1.0, 0.7))
 
 def _activities() -> NDArray[np.float64]:
     values, sigmas = np.transpose(CODES)[..., None]
-    return np.exp(-((PREFERRED - values) ** 2) / (2 * sigmas**2))
+    activities: NDArray[np.float64] = np.exp(-((PREFERRED - values) ** 2) / (2 * sigmas**2))
+    return activities
 
 
 def _judge_encode(activities: NDArray[np.float64]) -> Finding:

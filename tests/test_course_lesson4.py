@@ -70,7 +70,7 @@ WRONG = [
     ("4.4", 0.359, "right"),
     ("4.4", 0.6, "too little"),
     ("4.4", 0.7, "more than asked"),
-    ("4.4", 2, "between 0 and 1"),
+    ("4.4", 2, "between .01 and .99"),
     ("4.5", (0.5, 0.5), "collides"),
     ("4.5", (0.2, 0.8), "collides"),
     ("4.5", (0.9, 0.9), "away from the target"),

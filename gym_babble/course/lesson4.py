@@ -148,6 +148,8 @@ def _draw_place(points: NDArray[np.float64], axes: Axes) -> None:
 
 
 CLEARANCE = 0.25
+LEAST_B1 = 0.01
+"""Bound of b1, as in babbling."""
 
 
 def _path(b1: float) -> NDArray[np.float64]:
@@ -176,8 +178,8 @@ def _judge_clearance(b1: float) -> Finding:
         return right(f"From b1 = {least:.3f} on the path keeps {CLEARANCE} of the distance away.")
     if abs(1 - b1 - least) <= 0.008:
         return wrong("This path curves to the right.", "To the left means b1 above ½.")
-    if not 0 < b1 < 1:
-        return wrong(f"There is no path for b1 = {b1:.3g}.", "b1 lies between 0 and 1.")
+    if not LEAST_B1 <= b1 <= 1 - LEAST_B1:
+        return wrong(f"No movement has b1 = {b1:.3g}.", "b1 lies between .01 and .99.")
     said = f"The path of b1 = {b1:.3g} keeps {_clearance(b1):.3f} of the distance away"
     if b1 > least:
         return wrong(f"{said}: more than asked for.", "Try a smaller b1.")
@@ -187,7 +189,7 @@ def _judge_clearance(b1: float) -> Finding:
 def _draw_clearance(b1: float, axes: Axes) -> None:
     angle = np.linspace(0, 2 * np.pi, 100)
     axes.fill(0.5 + CLEARANCE * np.cos(angle), CLEARANCE * np.sin(angle), color="#e4e7eb")
-    if 0 < b1 < 1:
+    if LEAST_B1 <= b1 <= 1 - LEAST_B1:
         axes.plot(*_path(b1).T, color=STRONG, label="yours")
         axes.legend()
     axes.set(aspect="equal", title="start: left, target: right")

@@ -29,7 +29,8 @@ EXTENSION_SOURCES := Cargo.toml Cargo.lock $(shell find rust -type f -not -name 
 	$(foreach folder,$(NOT_IN_EXTENSION),-not -path '*/$(folder)/*'))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo serve pictures test test-rust test-python slow soak fuzz golden-native wasm lab-engine lab-page lab lab-zip test-lab lessons lint lint-rust \
+.PHONY: help setup demo serve pictures test test-rust test-python slow docs docs-rust docs-lab docs-links soak fuzz golden-native wasm \
+	lab-engine lab-page lab lab-zip test-lab lessons lint lint-rust \
 	lint-python lint-workflows deny bench microbench frameworks results constraints audit-export clean
 
 help: ## List the targets
@@ -48,6 +49,7 @@ serve: ## Build the server, which needs no Python, and start it
 PICTURES := docs/images
 pictures: setup ## Draw the pictures of README and docs again, without those of `make bench` (some minutes)
 	$(BIN)/python docs/experiments/film_babble.py --out $(PICTURES)/babble.gif
+	$(BIN)/python docs/_ext/films.py --out $(PICTURES)/environments
 	$(BIN)/python docs/experiments/film_chain.py --out $(PICTURES)/chain.gif --strip $(PICTURES)/chain.png
 	$(BIN)/python docs/experiments/grasp_basin.py --figure $(PICTURES)/basin.png
 	for figure in fig2 fig4 fig5 fig7 fig8 sight; do \
@@ -72,6 +74,29 @@ slow: setup ## Run the slow tests (ten minutes)
 # LESSON holds names: `make lessons LESSON=2-muscles`. Both versions of all are executed otherwise.
 lessons: $(LESSONS)/figures/installed ## Execute the lessons against the wheel, without a network, into build/lessons
 	$(LESSONS)/figures/bin/python docs/lessons/build.py $(LESSON)
+
+# SPHINX holds options: `make docs SPHINX='-j 2'`. Cargo documents the workspace's default members, no bindings.
+LAB_PAGE := gym_babble/lab/page/index.html
+SITE := build/site
+LESSON_PAGES := $(patsubst docs/lessons/%.md,$(LESSONS)/student/%.ipynb,$(wildcard docs/lessons/[0-9]-*.md))
+docs: setup $(LESSON_PAGES) docs-rust docs-lab ## Build the site with the lab, and check its pages and links, into build/site
+	$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet -b html -d build/doctrees $(SPHINX) docs $(SITE)
+	$(BIN)/python docs/_ext/beside.py $(SITE)
+	$(BIN)/python docs/_ext/check_site.py $(SITE)
+
+# `make lessons` has made them in CI. A slow lesson is shown without its results unless it was executed before.
+$(LESSONS)/student/%.ipynb: docs/lessons/%.md | setup
+	$(BIN)/python docs/lessons/build.py $* $$(grep -q '^  slow: true' $< && echo --write-only)
+
+docs-rust:
+	RUSTDOCFLAGS='-D warnings' cargo doc --no-deps --lib --quiet
+
+docs-lab:
+	@if test -f $(LAB_PAGE); then :; elif command -v npm >/dev/null; then $(MAKE) lab-page; \
+		else echo '!!! npm not found: the site goes without the lab' >&2; fi
+
+docs-links: setup ## Ask every other host that the docs link to (needs a network)
+	$(BIN)/python -m sphinx --quiet -b linkcheck -d build/doctrees docs build/linkcheck
 
 soak: setup ## Play both tasks at random, ten million steps each, in Rust and Python (45 minutes)
 	cargo test --release --test soak -- --ignored --nocapture

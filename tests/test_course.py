@@ -10,7 +10,7 @@ import sys
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -361,6 +361,7 @@ def observed(kind):
 
 
 @pytest.mark.parametrize("exercise", [e for lesson in LESSONS.values() for e in lesson])
+@settings(max_examples=15)
 @given(data=st.data())
 def test_no_answer_makes_a_judge_or_a_picture_raise(exercise, data):
     pyplot = pytest.importorskip("matplotlib.figure")

@@ -45,6 +45,8 @@ def test_each_link_of_a_page_leads_somewhere(pages, pypi, repository):
     for page, text in pages.items():
         for _, _, address in pypi["RELATIVE"].findall(text):
             path, _, anchor = address.partition("#")
+            if path.endswith("lab/index.html") or path.startswith("envs/"):
+                continue  # On the site alone, where `make docs` checks it.
             target = (repository / page.parent / path).resolve() if path else repository / page
             assert target.exists(), (page, address)
             assert not anchor or anchor in anchors(target.read_text(encoding="utf-8")), address
@@ -52,7 +54,7 @@ def test_each_link_of_a_page_leads_somewhere(pages, pypi, repository):
 
 def test_each_picture_is_shown_by_a_page_and_is_small(pages, repository):
     text = "".join(pages.values())
-    for path in (repository / IMAGES).iterdir():
+    for path in (repository / IMAGES).glob("*.*"):
         assert f"images/{path.name})" in text, path.name
         assert path.stat().st_size < 500_000, path.name
 

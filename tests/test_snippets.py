@@ -22,6 +22,8 @@ PAGES = (
             "beyond-the-paper",
             "environments",
             "export",
+            "index",
+            "start",
             "studies",
             *(f"how-to/own-{name}" for name in ("agent", "body", "chunk", "model", "rule")),
         )

@@ -37,6 +37,7 @@ BLOCK = re.compile(
     re.MULTILINE | re.DOTALL,
 )
 STATE = re.compile(r'data-exercise="([^"]+)" data-state="(\w+)"')
+ANSI = re.compile(r"\x1b\[[0-9;]*m")
 SETUP = """\
 # Installs what is missing. In an environment that has everything, this does nothing.
 from importlib.util import find_spec
@@ -166,7 +167,7 @@ def build(lesson: Lesson, version: str, *, run: bool) -> tuple[str, list[str]]:
             try:
                 seconds = execute(notebook, Path(name))
             except Exception as error:  # noqa: BLE001 - the other notebooks go on
-                return line, [str(error)[-2_000:]]
+                return line, [ANSI.sub("", str(error))[-1_500:]]
             said = problems(version, lesson, notebook, Path(name))
         line += f": {sum(seconds):.1f} s, slowest cell {max(seconds):.1f} s"
     target = OUT / version / f"{lesson.name}.ipynb"

@@ -5,14 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from matplotlib.axes import Axes
+    from numpy.typing import ArrayLike
 
     from gym_babble.course.answers import Answer, Seen
 
-__all__ = ["Exercise", "Finding", "right", "wrong"]
+__all__ = ["Exercise", "Finding", "mistake_in", "right", "wrong"]
 
 
 @dataclass(frozen=True)
@@ -44,6 +47,22 @@ def wrong(text: str, hint: str) -> Finding:
         hint: What to try next.
     """
     return Finding(False, text, hint)  # noqa: FBT003 - the first field
+
+
+def mistake_in(
+    seen: ArrayLike, mistakes: Iterable[tuple[ArrayLike, str, str]], atol: float
+) -> Finding | None:
+    """The first of the usual mistakes that an answer has.
+
+    Args:
+        seen: The answer.
+        mistakes: What an answer with a mistake is, what is wrong about it, and a hint.
+        atol: How far the answer may be off from it.
+    """
+    for other, text, hint in mistakes:
+        if np.allclose(seen, other, rtol=0, atol=atol):
+            return wrong(text, hint)
+    return None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -147,6 +147,10 @@ def _environment(task: TaskEntry, row: dict[str, Any]) -> Environment:
     return Environment(**row, task=task.name, options=options, presets=presets, fixed=fixed)
 
 
+TASKS: dict[str, TaskEntry]
+"""The tasks by name."""
+ENVIRONMENTS: tuple[Environment, ...]
+"""The registered environments, task by task."""
 TASKS, ENVIRONMENTS = _read()
 
 

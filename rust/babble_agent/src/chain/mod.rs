@@ -1,7 +1,7 @@
 //! Beyond the paper: a chain of babbles that ends in a grasp, what is learnt from it, and how an agent
 //! acts on that.
 //!
-//! A babble is a list of [chunks](chunks), movements that infants make from birth on or soon after. It
+//! A babble is a list of [chunks], movements that infants make from birth on or soon after. It
 //! begins with the object in the hand and ends with the hand closed on it again. From the sight of the
 //! object in between, the network learns the posture before the grasp, the posture at contact, and the
 //! hand's ([`ChainNetwork`]). [`acting`] plays the last links of the chain on what is recalled, or on what

@@ -13,7 +13,7 @@ use crate::scene::Primitive;
 const BAND: usize = 8;
 
 /// Picture of a scene, one ray a pixel. Exactly the pixels in which a target
-/// is seen are [red](super::is_red).
+/// is seen are [red](crate::is_red).
 #[must_use]
 pub fn render_rgb(scene: &[Primitive], camera: &Pinhole) -> RgbImage {
     let mut image = RgbImage::new(camera.width as u32, camera.height as u32);
@@ -40,7 +40,7 @@ pub fn render_rgb_into(
 }
 
 /// Draws a scene's targets over a picture of that camera, whatever was in front of them: exactly the
-/// pixels that are [red](super::is_red) in a picture of the scene alone.
+/// pixels that are [red](crate::is_red) in a picture of the scene alone.
 pub fn draw_red_over(image: &mut RgbImage, scene: &[Primitive], camera: &Pinhole) {
     let surfaces = decompose(scene, camera, None).surfaces;
     let windows = surfaces.iter().map(|surface| surface.window);

@@ -217,7 +217,7 @@ def _judge_part(text: str) -> Finding:
             f"{', '.join(map(repr, sorted(odd)))} is in no row of the table.",
             "Take an option of the table.",
         )
-    if brain.get("sizes", 1) not in {1, 2, 3}:
+    if brain.get("sizes", 1) not in [1, 2, 3]:
         return wrong("The table leaves sizes out.", "With `sizes` 1 the eye alone is the input.")
     try:
         held = _without(text)

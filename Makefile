@@ -80,7 +80,7 @@ LAB_PAGE := gym_babble/lab/page/index.html
 SITE := build/site
 LESSON_PAGES := $(patsubst docs/lessons/%.md,$(LESSONS)/student/%.ipynb,$(wildcard docs/lessons/[0-9]-*.md))
 docs: setup $(LESSON_PAGES) docs-rust docs-lab ## Build the site with the lab, and check its pages and links, into build/site
-	$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet -b html -d build/doctrees $(SPHINX) docs $(SITE)
+	$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet --write-all -b html -d build/doctrees $(SPHINX) docs $(SITE)
 	$(BIN)/python docs/_ext/beside.py $(SITE)
 	$(BIN)/python docs/_ext/check_site.py $(SITE)
 

@@ -56,7 +56,6 @@ add_module_names = False
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
 autodoc_mock_imports = ["ray"]  # In the extra `rllib` alone, which pins its own Gymnasium.
-python_maximum_signature_line_length = 88
 napoleon_numpy_docstring = False
 copybutton_exclude = ".linenos, .gp, .go"
 
@@ -76,11 +75,12 @@ html_theme_options = {
     "navbar_end": ["lab-link", "theme-switcher", "navbar-icon-links"],
     "secondary_sidebar_items": ["page-toc"],
     "show_toc_level": 2,
+    "collapse_navigation": True,
     "navigation_with_keys": False,
     "footer_start": ["copyright"],
     "footer_end": [],
 }
-html_sidebars: dict[str, list[str]] = {"index": [], "start": [], "glossary": []}
+html_sidebars: dict[str, list[str]] = {"index": [], "start": []}
 
 linkcheck_timeout = 20
 linkcheck_retries = 2

@@ -228,4 +228,3 @@ def test_the_javascript_example_plays_the_same_episode(server, repository, env_i
         timeout=PATIENCE_S,
     )
     assert played.stdout.strip() == expected(env_id, 3)
-    assert len(script.read_text(encoding="utf-8").splitlines()) < 100

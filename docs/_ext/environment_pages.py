@@ -138,7 +138,7 @@ def summary(row: Environment, env: BabbleEnv) -> str:
         ("Time limit", time),
         ("Return that counts as solved", threshold),
     ]
-    return table(("", row.id), rows)
+    return table(("fact", row.id), rows)
 
 
 def option_table(row: Environment) -> str:
@@ -175,25 +175,25 @@ def page(row: Environment) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def card(row: Environment) -> str:
+def tile(row: Environment) -> str:
     """An environment in the gallery."""
     film = f"![An episode of {row.id}](../images/environments/{row.id}.gif)"
     parts = (f"[{film}]({row.id}.md)", f"[{row.id}]({row.id}.md)", sections(row.task)[""])
     text = "\n\n".join((*parts, presets(row)))
-    return f":::{{container}} card\n{text}\n:::"
+    return f":::{{container}} tile\n{text}\n:::"
 
 
 def gallery() -> str:
     """The page that shows all of them."""
-    cards = "\n".join(card(row) for row in DOCUMENTED)
+    tiles = "\n".join(tile(row) for row in DOCUMENTED)
     names = "\n".join(row.id for row in DOCUMENTED)
     return f"""# Environments
 
 {len(DOCUMENTED)} ids of {len(CLASSES)} tasks, each with its own action, reward or place.
 {SHARED} are on the page [the environments](../environments.md).
 
-::::{{container}} cards
-{cards}
+::::{{container}} tiles
+{tiles}
 ::::
 
 ```{{toctree}}

@@ -9,6 +9,7 @@ from typing import Any
 from writing import write_pages
 
 ROOT = Path(__file__).resolve().parents[2]
+NOT_EXECUTED = ". It takes longer than others, and was not executed for this copy of the site."
 EXECUTED = ROOT / "build" / "lessons" / "student"
 
 
@@ -23,7 +24,8 @@ def page(notebook: Path) -> str:
     first = content["cells"][0]
     title, _, rest = "".join(first["source"]).partition("\n")
     link = f"{{download}}`Download this notebook <../../build/lessons/student/{notebook.name}>`"
-    first["source"] = f"{title}\n\n{link}\n{rest}"
+    shown = any(cell.get("outputs") for cell in content["cells"])
+    first["source"] = f"{title}\n\n{link}{'' if shown else NOT_EXECUTED}\n{rest}"
     return json.dumps(content, ensure_ascii=False)
 
 

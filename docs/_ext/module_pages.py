@@ -148,7 +148,7 @@ def index(names: list[str]) -> str:
 
 ## Python
 
-| module | |
+| module | about |
 | --- | --- |
 {modules}
 
@@ -158,7 +158,7 @@ The command line documents itself: `gym-babble --help`.
 
 [ARCHITECTURE.md](../../ARCHITECTURE.md) says how they depend on each other.
 
-| crate | |
+| crate | about |
 | --- | --- |
 {rust}
 

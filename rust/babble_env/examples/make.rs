@@ -20,7 +20,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-fn play(id: &str, options: &Options) -> Result<(&'static str, u32, f64), EnvError> {
+/// An episode's outcome, its control steps and its return.
+pub(crate) fn play(id: &str, options: &Options) -> Result<(&'static str, u32, f64), EnvError> {
     let task = babble_env::make(id, Config::profile("paper")?, options)?;
     let actions = task.spec().action.labels.len();
     let mut env = task.batch(1, Autoreset::Disabled, Executor::new(1)?)?;

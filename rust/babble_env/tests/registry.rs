@@ -1,6 +1,10 @@
 //! The registry: every id makes environments that step, options are checked, and a batch behind the
 //! object-safe trait is the typed batch to the bit.
 
+#[path = "../examples/make.rs"]
+#[expect(dead_code, reason = "its main reads the command line")]
+mod make;
+
 use std::sync::Arc;
 
 use babble_env::case::CasePart;
@@ -11,6 +15,22 @@ use babble_env::{
     Options, Purpose, ReachOptions, ReachTask, downcast, make,
 };
 use serde_json::json;
+
+/// Catches an example that plays beyond the end of an episode, or not the same one from its seed.
+#[test]
+fn the_example_plays_an_episode_of_every_id() {
+    for entry in TASKS {
+        for row in entry.environments {
+            let (outcome, steps, total) = make::play(row.id, &Options::new()).unwrap();
+            assert_ne!(outcome, "running", "{}", row.id);
+            assert!((1..=row.max_episode_steps).contains(&steps), "{}", row.id);
+            assert_eq!(
+                make::play(row.id, &Options::new()).unwrap(),
+                (outcome, steps, total)
+            );
+        }
+    }
+}
 
 fn paper() -> Config {
     Config::profile("paper").unwrap()

@@ -141,7 +141,7 @@ class PopulationMap:
 
     Raises:
         ConfigError: An argument is out of its bounds, or of another number of axes.
-    """  # noqa: RUF002 - the paper's symbols
+    """
 
     def __init__(
         self,
@@ -329,7 +329,7 @@ class TimeBaseGenerator:
 
     Raises:
         ConfigError: A parameter is not a number between 0 and 1.
-    """  # noqa: RUF002 - the paper's symbols
+    """
 
     def __init__(self, b1: float, b2: float) -> None:
         self.b1 = check_number("b1", b1, 0.0, 1.0, "")

@@ -19,7 +19,7 @@ PAGES = {
     "gym_babble": ("",),
     "envs": ("envs", "envs.registry", "envs.interface", "envs.spaces"),
     "config": ("config",),
-    "agents": ("agents", "agents.base", "agents.loading"),
+    "agents": ("agents", "agents.base", "agents.deciding", "agents.loading"),
     "brain": ("brain",),
     "course": ("course", "course.published", "course.palm"),
     "study": (

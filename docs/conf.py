@@ -45,7 +45,7 @@ module_pages.write(DOCS / "api")
 lesson_pages.write(DOCS / "course")
 
 # Markdown: what GitHub shows too, but for the fenced containers of the first page.
-myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
+myst_enable_extensions = ["colon_fence", "dollarmath"]
 myst_heading_anchors = 6
 nb_execution_mode = "off"  # `make lessons` has executed them.
 nb_merge_streams = True
@@ -53,8 +53,15 @@ nb_merge_streams = True
 # Docstrings name code between single backticks.
 default_role = "code"
 add_module_names = False
+python_use_unqualified_type_names = True
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
+autodoc_type_aliases = {
+    "ConfigLike": "gym_babble.config.ConfigLike",
+    "EnvLike": "gym_babble.agents.base.EnvLike",
+    "Observation": "gym_babble.agents.base.Observation",
+    "RuleLike": "gym_babble.brain.RuleLike",
+}
 autodoc_mock_imports = ["ray"]  # In the extra `rllib` alone, which pins its own Gymnasium.
 napoleon_numpy_docstring = False
 copybutton_exclude = ".linenos, .gp, .go"
@@ -82,6 +89,8 @@ html_theme_options = {
 }
 html_sidebars: dict[str, list[str]] = {"index": [], "start": []}
 
+# Links into the repository: the build has looked for the files.
+linkcheck_ignore = [f"{repository}/(blob|tree)/.*"]
 linkcheck_timeout = 20
 linkcheck_retries = 2
 linkcheck_anchors_ignore_for_url = [r"https://github\.com/.*"]

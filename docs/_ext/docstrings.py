@@ -44,6 +44,12 @@ def show_colons(
         lines[:] = [line.replace(HIDDEN_COLON, ":") for line in lines]
 
 
+def without_factories(*given: Any) -> tuple[str, str] | None:
+    """A signature in which a default that is made by a factory reads `...`."""
+    signature, returned = given[-2:]
+    return signature and (signature.replace("<factory>", "..."), returned)
+
+
 def _without_substitutions(line: str) -> str:
     """The line with |w| escaped, which would name a substitution, where it is no code."""
     parts = line.split("`")
@@ -56,4 +62,5 @@ def setup(app: Sphinx) -> dict[str, Any]:
     # Before napoleon, which reads sections of Google's style.
     app.connect("autodoc-process-docstring", process, priority=400)
     app.connect("autodoc-process-docstring", show_colons, priority=900)
+    app.connect("autodoc-process-signature", without_factories)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

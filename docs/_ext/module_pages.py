@@ -19,9 +19,9 @@ PAGES = {
     "gym_babble": ("",),
     "envs": ("envs", "envs.registry", "envs.interface", "envs.spaces"),
     "config": ("config",),
-    "agents": ("agents", "agents.base", "agents.loading"),
+    "agents": ("agents", "agents.base", "agents.deciding", "agents.loading"),
     "brain": ("brain",),
-    "course": ("course",),
+    "course": ("course", "course.published", "course.palm"),
     "study": (
         *(
             "study.scenarios",

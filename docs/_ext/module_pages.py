@@ -21,7 +21,7 @@ PAGES = {
     "config": ("config",),
     "agents": ("agents", "agents.base", "agents.deciding", "agents.loading"),
     "brain": ("brain",),
-    "course": ("course",),
+    "course": ("course", "course.published", "course.palm"),
     "study": (
         *(
             "study.scenarios",

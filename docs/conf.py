@@ -90,8 +90,8 @@ html_theme_options = {
 }
 html_sidebars: dict[str, list[str]] = {"index": [], "start": []}
 
-# Links into the repository: the build has looked for the files.
-linkcheck_ignore = [f"{repository}/(blob|tree)/.*"]
+# The build has looked for the files of the repository, and check_site.py for the lab's and cargo's.
+linkcheck_ignore = [f"{repository}/(blob|tree)/.*", r"(\.\./)*(lab|rust)/.*"]
 linkcheck_timeout = 20
 linkcheck_retries = 2
 linkcheck_anchors_ignore_for_url = [r"https://github\.com/.*"]

@@ -378,8 +378,8 @@ def observed(kind):
     return st.fixed_dictionaries({name: within(shape) for name, shape in kind.parts.items()})
 
 
-@pytest.mark.parametrize("exercise", [e for lesson in LESSONS.values() for e in lesson])
-@settings(max_examples=15)
+@pytest.mark.parametrize("exercise", EXERCISES.values(), ids=EXERCISES)
+@settings(max_examples=8)
 @given(data=st.data())
 def test_no_answer_makes_a_judge_or_a_picture_raise(exercise, data):
     pyplot = pytest.importorskip("matplotlib.figure")

@@ -33,6 +33,10 @@ def draw(seen, axes):
     axes.plot([0, seen])
 
 
+def draw_nothing(seen, axes):
+    raise RuntimeError(f"{seen} {axes}")
+
+
 def observe(agent):
     return {"a": [agent.predict(k) for k in range(3)]}
 
@@ -159,6 +163,20 @@ def test_the_line_that_raises_is_shown():
 def test_an_unknown_exercise_is_an_error_that_names_those_that_there_are(exercise):
     with pytest.raises(ValueError, match=r"exercise = .*(1\.1, 1\.2|write check\(\"1\.1\")"):
         course.check(exercise, 3)
+
+
+def test_a_judge_with_a_fault_ends_neither_a_notebook_nor_the_table_of_a_class(
+    tmp_path, monkeypatch
+):
+    faulty = Exercise(id="1.1", asks="three", answer=Number(), judge=fails, draw=draw_nothing)
+    monkeypatch.setitem(EXERCISES, "1.1", faulty)
+    monkeypatch.setitem(LESSONS, "1", (faulty,))
+    result = course.check("1.1", 3)
+    assert result.state == "wrong"
+    assert "cannot be judged: KeyError" in result.text
+    assert "No picture: RuntimeError" in result.note
+    done = course.hand_in(1, "Ada", tmp_path)
+    assert "cannot be judged" in check_handed_in(done.path).states["1.1"]
 
 
 def test_a_function_cannot_change_what_it_is_judged_by():

@@ -118,7 +118,7 @@ def _state(exercise: Exercise, answers: dict[str, Any]) -> str:
     if exercise.id not in answers:
         return "missing"
     try:
-        finding = exercise.judge(exercise.answer.read(answers[exercise.id]))
+        finding = exercise.find(exercise.answer.read(answers[exercise.id]))
     except ConfigError as error:
         return one_line(f"not an answer: {error}")
     return "right" if finding.is_right else one_line(finding.text)

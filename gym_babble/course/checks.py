@@ -78,7 +78,7 @@ def check(exercise: str, answer: Any) -> Result:
             text=f"Your code raises {type(error).__name__}: {error}",
             hint=f"Look at {_place(error)}.",
         )
-    finding = found.judge(seen)
+    finding = found.find(seen)
     _keep(found.id, Checked(seen=seen, is_right=finding.is_right))
     figure, note = _drawn(found, seen)
     return Result(
@@ -111,6 +111,8 @@ def _drawn(exercise: Exercise, seen: Seen) -> tuple[Figure | None, str]:
         return _figure(exercise.draw, seen), ""
     except MissingExtraError as missing:
         return None, f"No picture: {missing}"
+    except Exception as error:  # noqa: BLE001 - a picture must not cost the answer
+        return None, f"No picture: {type(error).__name__}: {error}"
 
 
 @styled

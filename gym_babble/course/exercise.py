@@ -5,17 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable
 
     from matplotlib.axes import Axes
-    from numpy.typing import ArrayLike
 
     from gym_babble.course.answers import Answer, Seen
 
-__all__ = ["Exercise", "Finding", "mistake_in", "right", "wrong"]
+__all__ = ["Exercise", "Finding", "right", "wrong"]
 
 
 @dataclass(frozen=True)
@@ -49,22 +46,6 @@ def wrong(text: str, hint: str) -> Finding:
     return Finding(False, text, hint)  # noqa: FBT003 - the first field
 
 
-def mistake_in(
-    seen: ArrayLike, mistakes: Iterable[tuple[ArrayLike, str, str]], atol: float
-) -> Finding | None:
-    """The first of the usual mistakes that an answer has.
-
-    Args:
-        seen: The answer.
-        mistakes: What an answer with a mistake is, what is wrong about it, and a hint.
-        atol: How far the answer may be off from it.
-    """
-    for other, text, hint in mistakes:
-        if np.allclose(seen, other, rtol=0, atol=atol):
-            return wrong(text, hint)
-    return None
-
-
 @dataclass(frozen=True, kw_only=True)
 class Exercise:
     """An exercise of a lesson."""
@@ -76,6 +57,16 @@ class Exercise:
     answer: Answer
     """The kind of answer."""
     judge: Callable[[Seen], Finding]
-    """Judges what was observed of an answer. It sees data alone and raises nothing."""
+    """Judges what was observed of an answer. It sees data alone and shall raise nothing."""
     draw: Callable[[Seen, Axes], None] | None = None
     """Draws what was observed of an answer beside what is expected."""
+
+    def find(self, seen: Seen) -> Finding:
+        """What the judge says. Should it raise, the answer is wrong, and the finding says why."""
+        try:
+            return self.judge(seen)
+        except Exception as error:  # noqa: BLE001 - one answer must not end a notebook or a class
+            return wrong(
+                f"This answer cannot be judged: {type(error).__name__}: {error}",
+                "Try an answer that is nearer to what is asked for.",
+            )

@@ -8,7 +8,8 @@ import numpy as np
 
 from gym_babble.config import Config
 from gym_babble.course.answers import Function, Number
-from gym_babble.course.exercise import Exercise, Finding, mistake_in, right, wrong
+from gym_babble.course.exercise import Exercise, Finding, right, wrong
+from gym_babble.course.mistakes import usual_mistake
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -74,7 +75,7 @@ def _judge_torque(torques: NDArray[np.float64]) -> Finding:
             "Which of them multiplies an angle?",
         ),
     )
-    return mistake_in(torques, mistakes, 1e-6) or wrong(
+    return usual_mistake(torques, mistakes, within=1e-6) or wrong(
         f"Your torque is off by up to {np.abs(torques - spring + damper).max():.3g} N·m.",
         f"T = K_P (q_des − q) − K_D q̇, with K_P = {MUSCLES.kp:g} and K_D = {MUSCLES.kd:g}.",
     )
@@ -109,7 +110,7 @@ def _judge_angle(angles: NDArray[np.float64]) -> Finding:
             "e^(−t/τ) is the share of the way that is left.",
         ),
     )
-    return mistake_in(angles, mistakes, 0.2) or wrong(
+    return usual_mistake(angles, mistakes, within=0.2) or wrong(
         f"After {t[2]} s on the way from {first[2]:g}° to {wanted[2]:g}° you return "
         f"{angles[2]:.4g}°.",
         f"After one time constant, {TAU_S} s, 37 % of the way is left.",
@@ -196,7 +197,7 @@ def _judge_hand(hands: NDArray[np.float64]) -> Finding:
         (there[:, ::-1], "x and y are exchanged.", "With both angles 0 the arm points along x."),
         (100 * there, "This is in centimetres.", "Return metres."),
     )
-    return mistake_in(hands, mistakes, 2e-3) or wrong(
+    return usual_mistake(hands, mistakes, within=2e-3) or wrong(
         f"With shoulder 0° and elbow 90° you return {hands[1].round(3).tolist()}.",
         "The upper arm then lies along x, and forearm and hand along y.",
     )

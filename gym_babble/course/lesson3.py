@@ -10,7 +10,8 @@ import numpy as np
 from gym_babble.brain import PopulationMap
 from gym_babble.config import Config
 from gym_babble.course.answers import Function, Number
-from gym_babble.course.exercise import Exercise, Finding, mistake_in, right, wrong
+from gym_babble.course.exercise import Exercise, Finding, right, wrong
+from gym_babble.course.mistakes import usual_mistake
 from gym_babble.envs import BabbleReachEnv
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ def _judge_centroid(centroids: NDArray[np.float64]) -> Finding:
             "Return the place in the image, counted from its upper left pixel.",
         ),
     )
-    return mistake_in(centroids, mistakes, 0.6) or wrong(
+    return usual_mistake(centroids, mistakes, within=0.6) or wrong(
         f"In the first image you find {centroids[0].round(1).tolist()}.",
         "A pixel is red if its red value is more than twice its green and more than twice its "
         "blue value. The values are uint8: convert them to float before you double them.",
@@ -160,7 +161,7 @@ def _judge_gaze(gazes: NDArray[np.float64]) -> Finding:
             "Once the eye has tilted, the target is √(y² + z²) ahead, not z.",
         ),
     )
-    return mistake_in(gazes, mistakes, 0.3) or wrong(
+    return usual_mistake(gazes, mistakes, within=0.3) or wrong(
         f"For a target at {TARGETS[1]} m you return {gazes[1].round(1).tolist()}°.",
         "Subtract the eye's place first. tan(tilt) = y/h, tan(pan) = x/√(y² + h²), with the "
         "height h.",
@@ -209,7 +210,7 @@ def _judge_encode(activities: NDArray[np.float64]) -> Finding:
             "Eq. 3 has no such norm: the most active neuron is near 1.",
         ),
     )
-    return mistake_in(activities, mistakes, 1e-4) or wrong(
+    return usual_mistake(activities, mistakes, within=1e-4) or wrong(
         f"For x = {CODES[1][0]} and σ = {CODES[1][1]} your middle neuron has "
         f"{activities[1, 3]:.3g}.",
         f"It should have exp(−0.4²/2) = {there[1, 3]:.3f}.",
@@ -251,7 +252,7 @@ def _judge_decode(values: NDArray[np.float64]) -> Finding:
             "Divide by the sum of the activities.",
         ),
     )
-    return mistake_in(values, mistakes, 1e-4) or wrong(
+    return usual_mistake(values, mistakes, within=1e-4) or wrong(
         f"For the second pattern you read {values[1]:.3g}.", f"Eq. 4 reads {there[1]:.3f}."
     )
 

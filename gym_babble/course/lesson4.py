@@ -9,7 +9,8 @@ import numpy as np
 
 from gym_babble.brain import TimeBaseGenerator, place
 from gym_babble.course.answers import Function, Number, Numbers
-from gym_babble.course.exercise import Exercise, Finding, mistake_in, right, wrong
+from gym_babble.course.exercise import Exercise, Finding, right, wrong
+from gym_babble.course.mistakes import usual_mistake
 from gym_babble.envs import BabbleReachEnv
 from gym_babble.study.scenarios import scenarios
 
@@ -43,7 +44,7 @@ def _judge_rate(rates: NDArray[np.float64]) -> Finding:
             "c_x has b1 as its own exponent.",
         ),
     )
-    return mistake_in(rates, mistakes, 1e-4) or wrong(
+    return usual_mistake(rates, mistakes, within=1e-4) or wrong(
         f"For (c_x, c_y, b1, b2, γ) = {STATES[1]} you return {rates[1].round(3).tolist()}.",
         f"It should be {there[1].round(3).tolist()}.",
     )
@@ -76,7 +77,7 @@ def _judge_gamma(gammas: NDArray[np.float64]) -> Finding:
             "πb1 is in radians already.",
         ),
     )
-    return mistake_in(gammas, mistakes, 1e-3) or wrong(
+    return usual_mistake(gammas, mistakes, within=1e-3) or wrong(
         f"For b1 = ½ and T = 8 s you return {gammas[0]:.3g}.", "There T = π/γ."
     )
 
@@ -133,7 +134,7 @@ def _judge_place(points: NDArray[np.float64]) -> Finding:
         ),
         (_turned(half, 1 / np.sqrt(2)), "You add 45°.", "Turn by θ − 45°."),
     )
-    return mistake_in(points, mistakes, 1e-4) or wrong(
+    return usual_mistake(points, mistakes, within=1e-4) or wrong(
         f"From {PLACES[1][0]} to {PLACES[1][1]} the point {PLACES[1][2]} comes to lie at "
         f"{points[1].round(3).tolist()}.",
         f"It should be {there[1].round(3).tolist()}. Try (1, 1) first: it must be the target.",

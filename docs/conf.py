@@ -62,6 +62,7 @@ autodoc_type_aliases = {
     "Observation": "gym_babble.agents.base.Observation",
     "RuleLike": "gym_babble.brain.RuleLike",
 }
+nitpick_ignore = [("py:class", path) for path in autodoc_type_aliases.values()]  # For Sphinx 8.
 autodoc_mock_imports = ["ray"]  # In the extra `rllib` alone, which pins its own Gymnasium.
 napoleon_numpy_docstring = False
 copybutton_exclude = ".linenos, .gp, .go"

@@ -88,5 +88,19 @@ def test_a_version_is_the_same_each_time_and_has_no_outputs(lesson):
         assert notebook.cells[1].source.startswith("# Installs what is missing.")
 
 
-def test_each_lesson_with_exercises_has_a_source():
-    assert [name[0] for name in SOURCES] == [number for number in LESSONS if LESSONS[number]]
+@pytest.mark.parametrize(
+    ("code", "said"),
+    [
+        ("import socket; socket.create_connection(('192.0.2.1', 80), 5)", "without a network"),
+        ("1 / 0", "ZeroDivisionError"),
+    ],
+)
+def test_a_cell_that_raises_or_asks_for_the_network_ends_the_build(tmp_path, code, said):
+    nbformat = pytest.importorskip("nbformat")
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(code)])
+    with pytest.raises(Exception, match=said):
+        BUILD["execute"](notebook, tmp_path)
+
+
+def test_no_lesson_is_missing():
+    assert [name[0] for name in SOURCES] == [*LESSONS]

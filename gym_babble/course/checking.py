@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["COLUMNS", "CheckedFile", "check_handed_in"]
 
-COLUMNS = ("file", "name", "lesson", "right", "not right", "missing", "version", "verdict")
+COLUMNS = ("file", "name", "lesson", "right", "wrong", "missing", "version", "verdict")
 FIELDS = {"format", "package", "lesson", "name", "answers"}
 
 
@@ -50,7 +50,7 @@ class CheckedFile:
         return tuple(k for k, state in self.states.items() if state == "missing")
 
     @property
-    def not_right(self) -> tuple[str, ...]:
+    def wrong(self) -> tuple[str, ...]:
         """Ids of the exercises with a wrong answer."""
         return tuple(k for k in self.states if k not in self.right + self.missing)
 
@@ -66,7 +66,7 @@ class CheckedFile:
             self.name,
             self.lesson,
             "" if self.problem else f"{len(self.right)}/{len(self.states)}",
-            " ".join(self.not_right),
+            " ".join(self.wrong),
             " ".join(self.missing),
             self.version,
             self.verdict,

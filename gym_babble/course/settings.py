@@ -38,6 +38,7 @@ class Settings:
         if not isinstance(value, str) or len(value) > MOST_LETTERS:
             raise UnsuitableError(f"A text of at most {MOST_LETTERS:,} letters is expected.")
         try:
-            return self.observe(json.loads(value))
+            settings = json.loads(value)
         except (ValueError, RecursionError) as error:
             raise UnsuitableError(f"The settings are no JSON: {error}.") from error
+        return self.observe(settings)

@@ -204,7 +204,8 @@ audit-export: $(STAMPS)/dependencies ## Write the pinned Python dependencies wit
 clean: ## Remove what the other targets made
 	rm -rf $(VENV) $(FRAMEWORKS) $(PEERS) target report build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .benchmarks
 	find gym_babble tests bench -name __pycache__ -prune -exec rm -rf {} +
-	rm -rf gym_babble/_core*.so gym_babble/lab/page lab/node_modules lab/dist lab/src/engine/wasm lab/public/policies
+	rm -rf gym_babble/_core*.so gym_babble/lab/page lab/node_modules lab/dist lab/src/engine/wasm lab/public/policies \
+		docs/api docs/course docs/envs
 
 # constraints.txt names every package of the extras `all` and `dev`, so it is also the list to install.
 $(STAMPS)/dependencies: pyproject.toml constraints.txt

@@ -19,6 +19,7 @@ from gym_babble.course import checks
 from gym_babble.course.answers import Choice, Function, Number, Numbers, Observed, UnsuitableError
 from gym_babble.course.checking import check_handed_in
 from gym_babble.course.exercise import Exercise, right, wrong
+from gym_babble.course.handing_in import _plain
 from gym_babble.course.lessons import EXERCISES, LESSONS
 from gym_babble.course.settings import Settings
 from gym_babble.errors import ConfigError
@@ -372,7 +373,7 @@ def observed(kind):
     if isinstance(kind, Choice):
         return st.sampled_from(kind.choices)
     if isinstance(kind, Settings):
-        return st.sampled_from(["{}", '{"sigma": "wide"}', '{"sizes": [1], "readout": {}}'])
+        return st.sampled_from(["{}", '{"sigma": "wide"}', '{"readout": {}, "sizes": [1]}'])
     if isinstance(kind, Function):
         return within((len(kind.inputs()), *kind.shape))
     return st.fixed_dictionaries({name: within(shape) for name, shape in kind.parts.items()})
@@ -389,6 +390,18 @@ def test_no_answer_makes_a_judge_or_a_picture_raise(exercise, data):
     assert finding.is_right or finding.hint
     if exercise.draw is not None:
         exercise.draw(seen, pyplot.Figure().subplots())
+
+
+@pytest.mark.parametrize("exercise", EXERCISES.values(), ids=EXERCISES)
+@settings(max_examples=5)
+@given(data=st.data())
+def test_a_file_gives_the_judge_the_same_bits_as_the_notebook(exercise, data):
+    seen = data.draw(observed(exercise.answer))
+    again = exercise.answer.read(json.loads(json.dumps(_plain(seen))))
+    parts, parts_again = (each if isinstance(each, dict) else {"": each} for each in (seen, again))
+    assert parts.keys() == parts_again.keys()
+    for name, part in parts.items():
+        assert np.array_equal(part, parts_again[name])
 
 
 @pytest.mark.parametrize(("number", "lesson"), LESSONS.items())

@@ -157,7 +157,7 @@ def _judge_seeds(played: NDArray[np.float64]) -> Finding:
         )
     if np.array_equal(first, other):
         return wrong("Seeds 3 and 4 end alike.", "Give the seed to `env.reset`.")
-    return right("The same seed gives the same episode to the last bit, and another one another.")
+    return right("The same seed gives the same episode to the last bit, and seed 4 another one.")
 
 
 EXERCISES = (

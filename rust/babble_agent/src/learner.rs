@@ -164,17 +164,14 @@ impl<N: Network> Learner<N> {
         executor: &mut Executor,
     ) -> Result<(), AgentError> {
         self.taught(task, n, executor, |network, experiences, executor| {
-            let taught = || {
-                let mut chunks = experiences.chunks(CHUNK);
-                chunks.try_for_each(|chunk| network.learn(chunk))
-            };
-            #[cfg(feature = "threads")]
-            return executor.run(taught)?;
-            #[cfg(not(feature = "threads"))]
-            {
-                let (_, mut taught) = (executor, taught);
-                taught()
+            for chunk in experiences.chunks(CHUNK) {
+                executor.check()?;
+                #[cfg(feature = "threads")]
+                executor.run(|| network.learn(chunk))??;
+                #[cfg(not(feature = "threads"))]
+                network.learn(chunk)?;
             }
+            Ok(())
         })
     }
 
@@ -189,9 +186,12 @@ impl<N: Network> Learner<N> {
         n: usize,
         executor: &mut Executor,
     ) -> Result<(), AgentError> {
-        self.taught(task, n, executor, |network, experiences, _| {
-            let mut chunks = experiences.chunks(CHUNK);
-            chunks.try_for_each(|chunk| network.learn_by(rule, chunk))
+        self.taught(task, n, executor, |network, experiences, executor| {
+            for chunk in experiences.chunks(CHUNK) {
+                executor.check()?;
+                network.learn_by(rule, chunk)?;
+            }
+            Ok(())
         })
     }
 

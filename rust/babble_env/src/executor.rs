@@ -98,6 +98,14 @@ impl Executor {
         self
     }
 
+    /// Whether to go on, for work in the thread that calls: it asks at least once a second.
+    ///
+    /// # Errors
+    /// [`EnvError::Interrupted`] once it was interrupted.
+    pub fn check(&self) -> Result<(), EnvError> {
+        Stop::asking(&self.clock, self.interrupted).check()
+    }
+
     /// How many threads there are.
     #[must_use]
     pub const fn threads(&self) -> usize {

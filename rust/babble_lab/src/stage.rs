@@ -127,6 +127,7 @@ impl Stage {
         for (i, (player, agent)) in self.players.iter_mut().zip(agents).enumerate() {
             let before = player.progress.steps;
             while player.progress.running && player.progress.steps < before + n {
+                executor.check()?;
                 player.step(agent, self.seed, &self.task, executor)?;
             }
             let steps = player.progress.steps;

@@ -204,21 +204,6 @@ impl Policy for RandomActions<'_> {
         4
     }
 
-    fn plan(&self, senses: &[f32], _executor: &mut Executor) -> Result<Vec<Plan>, AgentError> {
-        Ok(vec![Plan::Steps; senses.len() / self.senses_len()])
-    }
-
-    fn decide(
-        &self,
-        _senses: &[f32],
-        _executor: &mut Executor,
-    ) -> Result<Vec<Vec<f64>>, AgentError> {
-        Err(AgentError::Config {
-            field: "agent",
-            problem: "the random agent of grasping decides each step by itself".to_owned(),
-        })
-    }
-
     fn act(&self, _plan: &mut Plan, _senses: &[f32], action: &mut [f32]) -> Result<(), AgentError> {
         let mut stream = self.random.next();
         action.fill_with(|| stream.uniform(-1.0, 1.0) as f32);

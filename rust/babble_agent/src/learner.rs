@@ -2,12 +2,13 @@
 
 use std::iter;
 
-use babble_env::{Config, Executor, Task};
+use babble_env::picture::Visible;
+use babble_env::{Config, Executor, Outcome, Task};
 use serde::{Deserialize, Serialize};
 
 use crate::babbling::{Babble, Babbling};
 use crate::error::AgentError;
-use crate::network::Network;
+use crate::network::{Activities, Network};
 use crate::rule::RuleOfOnesOwn;
 use crate::tensors::{self, whole_config};
 
@@ -69,6 +70,28 @@ impl<N: Network> Clone for Learner<N> {
             practice: self.practice,
         }
     }
+}
+
+/// A babble for people to look at.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BabbleFilm {
+    /// What there was to see at its beginning, and at the end of each control period.
+    pub frames: Vec<Visible>,
+    /// Moments in which the rule is applied if the babble can be learnt from.
+    pub moments: Vec<FilmMoment>,
+    /// Whether it can be learnt from.
+    pub learnable: bool,
+    /// How it ended.
+    pub outcome: Outcome,
+}
+
+/// Activities of all maps in a frame of a film.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FilmMoment {
+    /// Number of the frame.
+    pub frame: usize,
+    /// What was seen and what was done, for each association.
+    pub activities: Vec<Activities>,
 }
 
 /// What is known of a learner beside its weights.
@@ -223,6 +246,35 @@ impl<N: Network> Learner<N> {
         }
         *self = learning;
         Ok(())
+    }
+
+    /// The babble that comes after `ahead` others from here on, for people to look at. Nothing is learnt
+    /// from it.
+    ///
+    /// # Errors
+    /// [`AgentError::OtherConfig`] for a task of another config than the learner's, or an error of the
+    /// task.
+    pub fn film(&self, task: &N::Task, ahead: u64) -> Result<BabbleFilm, AgentError> {
+        self.check_config(task)?;
+        let (experiences, film) = self.babbling.film(task, ahead)?;
+        let mut moments = Vec::new();
+        for (&frame, one) in film.marks.iter().zip(&experiences) {
+            let activities = self.network.encode(std::slice::from_ref(one))?;
+            let all = activities
+                .iter()
+                .flat_map(|maps| maps.g.iter().chain(&maps.a));
+            // Where the eye does not see the object, or the hand did not get so far, maps have none.
+            if all.clone().all(|x| x.is_finite()) {
+                moments.push(FilmMoment { frame, activities });
+            }
+        }
+        let ends = experiences.last().map(N::Task::outcome);
+        Ok(BabbleFilm {
+            frames: film.frames,
+            moments,
+            learnable: experiences.iter().any(N::Task::is_learnable),
+            outcome: ends.unwrap_or(Outcome::Running),
+        })
     }
 
     fn check_config(&self, task: &N::Task) -> Result<(), AgentError> {

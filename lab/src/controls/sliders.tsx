@@ -13,6 +13,7 @@ export function SliderControls({ session }: { session: Session }) {
   const titles = { config: "Body and task", options: "Environment", brain: "Maps and rule" };
   return (
     <Group session={session} controls={["sliders"]} title="Numbers of the model">
+      <ProfileSelect session={session} />
       {(["config", "options", "brain"] as const).map((where) => {
         const rows = sliders
           .filter((slider) => slider.where === where)
@@ -30,6 +31,31 @@ export function SliderControls({ session }: { session: Session }) {
         );
       })}
     </Group>
+  );
+}
+
+/** The body and task that the numbers differ from. */
+function ProfileSelect({ session }: { session: Session }) {
+  const { setup } = session.state.value;
+  return (
+    <div class="row">
+      <label>
+        Profile of the body{" "}
+        <select
+          value={setup.profile}
+          onChange={(event) => {
+            const profile = event.currentTarget.value;
+            void session.attempt(() => session.change({ ...setup, profile }));
+          }}
+        >
+          {session.registry.profiles.map((profile) => (
+            <option key={profile} value={profile}>
+              {profile}
+            </option>
+          ))}
+        </select>
+      </label>
+    </div>
   );
 }
 

@@ -1,6 +1,7 @@
 /** Numbers of body, maps and rule: sliders with their symbols, and choices. */
 import { useState } from "preact/hooks";
 import type { Json, Slider } from "../engine/contract";
+import { symbols } from "../lessons/prose";
 import type { Session } from "../session/session";
 import { Act, Group } from "./group";
 import { agentsWith, sliderDefault, sliderValue, withValue } from "./setup-value";
@@ -71,7 +72,7 @@ function SliderRow({ session, slider, agent }: { session: Session; slider: Slide
   return (
     <div class="slider">
       <span class="label">
-        {slider.symbol && <i class="symbol">{slider.symbol}</i>} {label}
+        {slider.symbol && <i class="symbol">{symbols(slider.symbol)}</i>} {label}
         {slider.unit && <span class="unit"> [{slider.unit}]</span>}
       </span>
       {slider.choices ? (

@@ -144,7 +144,7 @@ function Way({ arrow, name, axes }: { arrow: string; name: string; axes: Axis[] 
 
 /** "pan [share of range], 0 to 1". */
 export function axisText({ name, unit, range }: Axis): string {
-  const [low, high] = range.map((value) => String(Number(value.toFixed(2))).replace("-", "−"));
+  const [low, high] = range.map((value) => minus(Number(value.toFixed(2))));
   return `${name}${unit && ` [${unit}]`}, ${low} to ${high}`;
 }
 
@@ -165,20 +165,32 @@ export function short(value: number): string {
 function summary({ map, silenced }: HeatMapProps): string {
   const [peak, most] = strongest(map.activity);
   const dead = silenced?.length ? `; ${silenced.length} silenced` : "";
-  if (most === 0) return `no activity${dead}`;
+  if (most === 0) return `nowhere more than 0${dead}`;
   return `most: ${short(most)} at ${placeText(peak, map)}${dead}`;
 }
 
 function describeNeuron({ map, silenced }: HeatMapProps, neuron: number): string {
   const dead = silenced?.includes(neuron) ? ", silenced" : "";
-  return `neuron ${placeText(neuron, map)}: ${short(map.activity[neuron] ?? 0)}${dead}`;
+  return `${short(map.activity[neuron] ?? 0)} at ${placeText(neuron, map)}${dead}`;
 }
 
-function placeText(neuron: number, map: MapActivity): string {
-  return indices(neuron, map.shape)
-    .map((index) => index + 1)
-    .join(", ");
+/** What a neuron prefers: "pan 40 % of range, tilt 65 % of range". */
+export function placeText(neuron: number, { shape, axes }: MapActivity): string {
+  const values = indices(neuron, shape).map((index, at) => {
+    const { name, unit, range } = axes[at]!;
+    const [low = 0, high = 0] = range;
+    return `${name} ${valueText(low + ((high - low) * index) / (shape[at]! - 1), unit)}`;
+  });
+  return values.reverse().join(", ");
 }
+
+function valueText(value: number, unit: string): string {
+  if (unit === "share of range") return `${minus(Math.round(100 * value))} % of range`;
+  if (unit === "deg") return `${minus(Math.round(value))}°`;
+  return `${minus(Number(value.toFixed(2)))}${unit && ` ${unit}`}`;
+}
+
+const minus = (value: number) => String(value).replace("-", "−");
 
 /** The first of the greatest values. */
 export function strongest(activity: Float32Array): [number, number] {

@@ -173,9 +173,9 @@ export class Session {
   /** Waits while what is shown is paused; resolves to whether one step is to be made. */
   async held(work: Work): Promise<boolean> {
     while (this.paused.value && this.steps === 0 && !work.stopped) await pause(PAUSED_MS);
-    if (this.steps === 0) return false;
-    this.steps -= 1;
-    return true;
+    const stepped = this.paused.value && this.steps > 0;
+    this.steps = stepped ? this.steps - 1 : 0;
+    return stepped;
   }
 
   /** Moves what is paused on by one step. */

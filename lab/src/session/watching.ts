@@ -21,6 +21,7 @@ export async function watchBabble(session: Session, work: Work): Promise<boolean
   const agent = watchedAgent(session);
   for (let ahead = 0; session.babblingSpeed.value !== Number.POSITIVE_INFINITY; ahead += 1) {
     const film = await session.engine.film(agent, ahead);
+    if (work.stopped) return false;
     await showFilm(session, work, film);
     if (work.stopped) return false;
     if (film.learnable) break;

@@ -85,6 +85,18 @@ pub struct BabbleFilm {
     pub outcome: Outcome,
 }
 
+impl BabbleFilm {
+    /// Adds a moment. There is none where the eye does not see the object, or the hand did not get so far: maps
+    /// have no activity then.
+    fn push(&mut self, moment: FilmMoment) {
+        let finite = |all: &[f32]| all.iter().all(|x| x.is_finite());
+        let known = |maps: &Activities| finite(&maps.g) && finite(&maps.a);
+        if moment.activities.iter().all(known) {
+            self.moments.push(moment);
+        }
+    }
+}
+
 /// Activities of all maps in a frame of a film.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilmMoment {
@@ -257,24 +269,18 @@ impl<N: Network> Learner<N> {
     pub fn film(&self, task: &N::Task, ahead: u64) -> Result<BabbleFilm, AgentError> {
         self.check_config(task)?;
         let (experiences, film) = self.babbling.film(task, ahead)?;
-        let mut moments = Vec::new();
-        for (&frame, one) in film.marks.iter().zip(&experiences) {
-            let activities = self.network.encode(std::slice::from_ref(one))?;
-            let all = activities
-                .iter()
-                .flat_map(|maps| maps.g.iter().chain(&maps.a));
-            // Where the eye does not see the object, or the hand did not get so far, maps have none.
-            if all.clone().all(|x| x.is_finite()) {
-                moments.push(FilmMoment { frame, activities });
-            }
-        }
         let ends = experiences.last().map(N::Task::outcome);
-        Ok(BabbleFilm {
+        let mut made = BabbleFilm {
             frames: film.frames,
-            moments,
+            moments: Vec::new(),
             learnable: experiences.iter().any(N::Task::is_learnable),
             outcome: ends.unwrap_or(Outcome::Running),
-        })
+        };
+        for (&frame, one) in film.marks.iter().zip(&experiences) {
+            let activities = self.network.encode(std::slice::from_ref(one))?;
+            made.push(FilmMoment { frame, activities });
+        }
+        Ok(made)
     }
 
     fn check_config(&self, task: &N::Task) -> Result<(), AgentError> {

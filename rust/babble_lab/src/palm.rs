@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use babble_env::{AnyTask, CaseValue, CaseValues, GraspCase, GraspTask, downcast};
+use babble_env::{AnyTask, CaseValues, GraspCase, GraspTask, downcast};
 
 use crate::command::Case;
 use crate::fault::Fault;
@@ -49,11 +49,11 @@ impl Lab {
         let [least, most] = ELBOW_DEG.map(f64::to_radians);
         let touching = (elbow + withdrawn).clamp(least, most);
         let object = task.along_palm([shoulder, touching], diameter / 2.0, wrist_m);
-        let part = |name: &str, numbers: [f64; 2]| (name.to_owned(), CaseValue::from(numbers));
-        Ok(Case::from([
-            part("start", [shoulder, touching - withdrawn]),
-            part("object", object),
-            ("diameter".to_owned(), CaseValue::Number(diameter)),
-        ]))
+        let mut case = Case::new();
+        let start = [shoulder, touching - withdrawn];
+        case.insert("start".to_owned(), start.into());
+        case.insert("object".to_owned(), object.into());
+        case.insert("diameter".to_owned(), diameter.into());
+        Ok(case)
     }
 }

@@ -52,8 +52,7 @@ impl Lab {
             AgentSetup::Scripted {} => return Ok("agent = gym_babble.Scripted(env)\n".to_owned()),
             AgentSetup::Oracle {} => return Ok("agent = gym_babble.Oracle(env)\n".to_owned()),
             AgentSetup::Approach {} => {
-                let problem =
-                    "this agent is of the lab alone; in Python examples/grasp_basin.py plays it";
+                let problem = "the agent that bends its elbow is of the lab alone";
                 return Err(Fault::config("agent", problem));
             }
             AgentSetup::Policy { name } => {

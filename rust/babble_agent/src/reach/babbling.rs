@@ -71,7 +71,7 @@ impl Movement {
         options: ReachBabbling,
         stream: &mut Stream,
         all: bool,
-        mut each: impl FnMut([f64; 2]),
+        each: &mut dyn FnMut([f64; 2]),
     ) -> Result<Option<Experience>, EnvError> {
         let case = &self.case;
         let mut senses = task.config.noise.senses(stream);
@@ -123,7 +123,7 @@ impl Babble for ReachTask {
         if !whole && !all {
             return Ok(Vec::new());
         }
-        let made = movement.make(self, options, stream, all, |_| {})?;
+        let made = movement.make(self, options, stream, all, &mut |_| {})?;
         Ok(made.into_iter().collect())
     }
 
@@ -135,7 +135,7 @@ impl Babble for ReachTask {
     ) -> Result<(Vec<Experience>, Film), EnvError> {
         let movement = Movement::draw(self, stream)?;
         let mut postures = vec![movement.case.start];
-        let made = movement.make(self, options, stream, true, |q| postures.push(q))?;
+        let made = movement.make(self, options, stream, true, &mut |q| postures.push(q))?;
         let gaze = self.foveate(&movement.case)?;
         let each = postures.into_iter();
         let mut film = Film {

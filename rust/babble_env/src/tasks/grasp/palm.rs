@@ -28,9 +28,12 @@ impl GraspTask {
         let side = self.beside_palm(case.radius());
         let along = libm::sqrt(from_elbow.norm_squared() - side * side);
         let wrist_m = along - self.wrist();
-        let bent = libm::atan2(from_elbow.y, from_elbow.x) - libm::atan2(side, along) - shoulder;
+        let mut bent =
+            libm::atan2(from_elbow.y, from_elbow.x) - libm::atan2(side, along) - shoulder;
         // The first time that it comes there from the start on.
-        let bent = elbow - NOTHING + (bent - elbow + NOTHING).rem_euclid(TAU);
+        while bent < elbow - NOTHING {
+            bent += TAU;
+        }
         let met = (0.0..=self.config.body.hand.palm_m).contains(&wrist_m);
         (met && self.arm.in_range([shoulder, bent])).then_some(wrist_m)
     }

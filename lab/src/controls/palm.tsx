@@ -12,10 +12,12 @@ export function PalmControls({ session }: { session: Session }) {
   const placed = episode?.palm == null ? null : Number((100 * episode.palm).toFixed(2));
   const shown = moving ?? placed;
   const place = (centimetres: number) => {
-    setMoving(null);
-    if (!Number.isFinite(centimetres)) return;
+    if (!Number.isFinite(centimetres)) return setMoving(null);
     const within = Math.min(HIGH, Math.max(LOW, centimetres));
-    void session.attempt(async () => session.recall(await session.engine.palmCase(within / 100)));
+    setMoving(within);
+    void session
+      .attempt(async () => session.recall(await session.engine.palmCase(within / 100)))
+      .then(() => setMoving(null));
   };
   return (
     <div class="slider">

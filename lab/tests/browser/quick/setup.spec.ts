@@ -37,6 +37,7 @@ test("the ball is moved along the palm by keys, slider and number, and by drag",
   await expect(page.locator(".status")).not.toContainText("success");
   await number.fill("4");
   await number.press("Enter");
+  await expect(slider).toHaveAttribute("aria-valuetext", "4 centimetres");
   await slider.focus();
   await page.keyboard.press("ArrowLeft");
   await expect(number).toHaveValue("3.9");

@@ -188,6 +188,10 @@ struct Clock {
     asked: std::sync::atomic::AtomicU64,
 }
 
+#[cfg_attr(
+    not(feature = "threads"),
+    expect(clippy::derivable_impls, reason = "no instant is a default")
+)]
 impl Default for Clock {
     fn default() -> Self {
         Self {
@@ -201,6 +205,10 @@ impl Default for Clock {
 
 impl Clock {
     /// Whether it is time to ask again.
+    #[cfg_attr(
+        not(feature = "threads"),
+        expect(clippy::unused_self, reason = "there is no clock")
+    )]
     fn is_due(&self) -> bool {
         #[cfg(feature = "threads")]
         {

@@ -68,15 +68,16 @@ test("undo takes back a run, and watched babbles one by one", async ({ page }) =
   await expect(page.getByText(/^100 of/)).toBeVisible();
   await speed(page, "20");
   await button(page, "Babble 100 ×").click();
-  await expect(page.getByText(/^102 of/)).toBeVisible();
+  await expect(page.getByText(/^10[2-9] of/)).toBeVisible();
   await button(page, "Stop").click();
   await expect(button(page, "Stop")).toHaveCount(0);
+  const before = Number.parseInt(await learnt(page), 10);
   await undo.click();
-  await expect(page.getByText(/^10[1-3] of/)).toBeVisible();
-  for (let times = 0; times < 9 && !/^0 of/.test(await learnt(page)); times += 1) {
-    await undo.click();
-  }
-  await expect(page.getByText(/^0 of 0/)).toBeVisible();
+  await expect.poll(() => learnt(page)).toMatch(new RegExp(`^${before - 1} of`));
+  await expect(async () => {
+    if (await undo.isEnabled()) await undo.click({ timeout: 1000 });
+    expect(await learnt(page)).toMatch(/^0 of 0/);
+  }).toPass({ intervals: [50] });
 });
 
 test("with little motion a babble is shown by a few pictures", async ({ browser }) => {

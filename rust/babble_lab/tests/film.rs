@@ -50,7 +50,7 @@ fn the_films_are_those_of_the_babbles_that_are_learnt_from_next() {
 }
 
 /// The weights after one babble are those of Eq. 7 with the activities of its film: Δw = η (a − ā) (g − ḡ)
-/// (w_max − |w|) from w = ā = ḡ = 0 on. Catches activities of another moment or map.
+/// (`w_max` − |w|) from w = ā = ḡ = 0 on. Catches activities of another moment or map.
 #[test]
 fn eq_7_learns_from_the_activities_of_the_film() {
     // The chain learns by another rule.

@@ -10,7 +10,7 @@ use crate::error::AgentError;
 use crate::policy::{Decisions, Grasp, Plan, Policy, Random};
 
 /// Where shoulder, elbow, thumb and finger stand in a flat observation.
-const POSTURE: [usize; 4] = [at::ARM, at::ARM + 1, at::HAND, at::HAND + 1];
+pub(super) const POSTURE: [usize; 4] = [at::ARM, at::ARM + 1, at::HAND, at::HAND + 1];
 
 /// What an agent sees at the beginning of an episode.
 #[derive(Debug, Clone, Copy)]

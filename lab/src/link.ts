@@ -3,7 +3,8 @@
  *
  * A link holds what differs from the lesson's setup, or from the environment's default without a lesson.
  * Nested numbers are dotted (`config.task.timing.duration=4`); values are JSON, or bare text where that cannot be
- * taken for JSON. An agent is the variant of a Hebb agent, or `random`, `scripted`, `oracle`, `policy:NAME`.
+ * taken for JSON. An agent is the variant of a Hebb agent, or `random`, `scripted`, `oracle`, `approach`,
+ * `policy:NAME`.
  */
 import type { AgentSetup, Lesson, Setup } from "./engine/contract";
 import { type Fail, flat, type LinkFault, readTree, same, split, written } from "./link-values";
@@ -23,7 +24,7 @@ export interface LinkDefaults {
   lessons: Lesson[];
 }
 
-const KINDS = ["random", "scripted", "oracle"] as const;
+const KINDS = ["random", "scripted", "oracle", "approach"] as const;
 
 /** The address of a state, without its "#"; empty for the default. */
 export function writeLink(link: Link, defaults: LinkDefaults): string {

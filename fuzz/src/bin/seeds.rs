@@ -12,9 +12,12 @@ use babble_agent::{
 };
 use babble_env::tasks::grasp::{GraspRequest, ObjectPlace};
 use babble_env::{
-    Autoreset, Batch, Config, EnvError, GraspOptions, GraspTask, ReachOptions, ReachTask, Task,
+    Autoreset, Batch, Config, EnvError, Executor, GraspOptions, GraspTask, ReachOptions, ReachTask,
+    Task,
 };
 use babble_fuzz::snapshots::{body_of, grasping, reaching};
+use babble_lab::lesson::lesson;
+use babble_lab::{Command, Lab, Policies, ToJson};
 use safetensors::SafeTensors;
 use serde_json::json;
 
@@ -60,7 +63,32 @@ fn main() -> Result<()> {
     put("config", "overrides", small.as_bytes())?;
     agents()?;
     requests()?;
-    openenv_messages()
+    openenv_messages()?;
+    lab_records()
+}
+
+/// The golden sessions, and the beginnings of lessons.
+fn lab_records() -> Result<()> {
+    let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("../rust/babble_lab/tests/golden");
+    for name in ["reach", "grasp"] {
+        let text = std::fs::read(golden.join(format!("{name}.json")))?;
+        put("lab_record", name, &text)?;
+    }
+    for id in ["equilibrium", "hebb", "chain"] {
+        let setup = lesson(id)?.setup.clone();
+        let mut lab = Lab::open(setup, Policies::default(), Executor::new(1)?)?;
+        if lab.state()?.agents[0].learns {
+            lab.apply(&Command::Babble { n: 2 })?;
+        }
+        lab.apply(&Command::Recall { case: None })?;
+        lab.apply(&Command::Step { n: 9 })?;
+        put(
+            "lab_record",
+            id,
+            lab.record(Some(id), id)?.to_json()?.as_bytes(),
+        )?;
+    }
+    Ok(())
 }
 
 /// A request of each operation.

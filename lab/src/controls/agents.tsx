@@ -10,6 +10,12 @@ const OTHERS: [string, AgentSetup][] = [
   ["oracle: knows the world, as a reference", { kind: "oracle" }],
 ];
 
+/** In grasping alone. */
+const APPROACH: [string, AgentSetup] = [
+  "approach: bends the elbow until the palm touches",
+  { kind: "approach" },
+];
+
 export function AgentControls({ session }: { session: Session }) {
   const { setup } = session.state.value;
   return (
@@ -70,7 +76,8 @@ function choicesFor(session: Session): Choice[] {
     const agent: AgentSetup = { kind: "hebb", variant, brain: {}, rule: null };
     return [keyOf(agent), `Hebb babbling, variant “${variant}”`, agent];
   });
-  const others = OTHERS.map(([title, agent]): Choice => [keyOf(agent), title, agent]);
+  const all = task === "grasp" ? [...OTHERS, APPROACH] : OTHERS;
+  const others = all.map(([title, agent]): Choice => [keyOf(agent), title, agent]);
   if (!SHIPPED.includes(task)) return [...hebb, ...others];
   const policy: AgentSetup = { kind: "policy", name: task };
   return [...hebb, [keyOf(policy), "PPO, trained before", policy], ...others];

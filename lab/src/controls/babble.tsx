@@ -3,6 +3,25 @@ import { useSignal } from "@preact/signals";
 import { babble, babbleUntilGood, PATIENCE, percent, TEST_CASES, test } from "../session/babbling";
 import type { Session } from "../session/session";
 import { Act, Group } from "./group";
+import { SpeedSelect } from "./speed";
+
+function WatchedControls({ session }: { session: Session }) {
+  if (session.watched.value === null) return null;
+  const paused = session.paused.value;
+  const turn = () => {
+    session.paused.value = !paused;
+  };
+  return (
+    <>
+      <button type="button" onClick={turn}>
+        {paused ? "Go on babbling" : "Pause babbling"}
+      </button>
+      <button type="button" disabled={!paused} onClick={() => session.stepOn()}>
+        One step of the babble
+      </button>
+    </>
+  );
+}
 
 export function BabbleControls({ session }: { session: Session }) {
   const goal = useSignal(90);
@@ -43,8 +62,21 @@ export function BabbleControls({ session }: { session: Session }) {
               % success
             </label>
           </div>
+          <div class="row">
+            <SpeedSelect
+              label="babbling speed"
+              speed={session.babblingSpeed}
+              fastest="as fast as it goes, not shown"
+            />
+            <WatchedControls session={session} />
+          </div>
           <p class="hint">
-            It tests between, and also stops if {PATIENCE} tests in a row are no better than the best before.
+            Slower than that, the scene shows each babble, and the brain what was seen and done in it. The
+            agent learns the same at any speed.
+          </p>
+          <p class="hint">
+            “Until it is good” tests between, and also stops if {PATIENCE} tests in a row are no better than
+            the best before.
           </p>
         </>
       )}

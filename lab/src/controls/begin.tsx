@@ -44,7 +44,10 @@ export function BeginControls({ session }: { session: Session }) {
           </Act>
         )}
       </div>
-      <p class="hint">The same seed gives the same babbles and the same cases.</p>
+      <p class="hint">
+        The same seed gives the same babbles and the same cases. Undo takes back what you did last: a run of
+        babbles or tests as a whole, but babbles that were shown one by one, as far as memory allows.
+      </p>
     </Group>
   );
 }

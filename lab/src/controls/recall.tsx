@@ -2,8 +2,8 @@
 import { play, runs, step } from "../session/playing";
 import type { Session } from "../session/session";
 import { Act, Group } from "./group";
-
-const SPEEDS = [1, 2, 5, 20, Number.POSITIVE_INFINITY];
+import { PalmControls } from "./palm";
+import { SpeedSelect } from "./speed";
 
 export function RecallControls({ session }: { session: Session }) {
   const { episode } = session.state.value;
@@ -32,24 +32,9 @@ export function RecallControls({ session }: { session: Session }) {
         <Act session={session} disabled={!runs(episode)} work={() => step(session)}>
           One step
         </Act>
-        <label>
-          speed{" "}
-          <select
-            value={String(session.speed.value)}
-            onChange={(event) => {
-              session.speed.value = Number(event.currentTarget.value);
-            }}
-          >
-            {SPEEDS.map((speed) => (
-              <option key={speed} value={String(speed)}>
-                {speed === Number.POSITIVE_INFINITY
-                  ? "as fast as it goes"
-                  : `${speed} ×${speed === 1 ? " (real time)" : ""}`}
-              </option>
-            ))}
-          </select>
-        </label>
+        <SpeedSelect label="playing speed" speed={session.speed} fastest="as fast as it goes" />
       </div>
+      {session.task.value === "grasp" && <PalmControls session={session} />}
       <p class="hint">
         You can also drag the parts of the case in the scene; the agent then begins anew there.
       </p>

@@ -1,6 +1,7 @@
 /** Numbers of body, maps and rule: sliders with their symbols, and choices. */
 import { useState } from "preact/hooks";
 import type { Json, Slider } from "../engine/contract";
+import { symbols } from "../lessons/prose";
 import type { Session } from "../session/session";
 import { Act, Group } from "./group";
 import { agentsWith, sliderDefault, sliderValue, withValue } from "./setup-value";
@@ -13,6 +14,7 @@ export function SliderControls({ session }: { session: Session }) {
   const titles = { config: "Body and task", options: "Environment", brain: "Maps and rule" };
   return (
     <Group session={session} controls={["sliders"]} title="Numbers of the model">
+      <ProfileSelect session={session} />
       {(["config", "options", "brain"] as const).map((where) => {
         const rows = sliders
           .filter((slider) => slider.where === where)
@@ -33,6 +35,31 @@ export function SliderControls({ session }: { session: Session }) {
   );
 }
 
+/** The body and task that the numbers differ from. */
+function ProfileSelect({ session }: { session: Session }) {
+  const { setup } = session.state.value;
+  return (
+    <div class="row">
+      <label>
+        Profile of the body{" "}
+        <select
+          value={setup.profile}
+          onChange={(event) => {
+            const profile = event.currentTarget.value;
+            void session.attempt(() => session.change({ ...setup, profile }));
+          }}
+        >
+          {session.registry.profiles.map((profile) => (
+            <option key={profile} value={profile}>
+              {profile}
+            </option>
+          ))}
+        </select>
+      </label>
+    </div>
+  );
+}
+
 function SliderRow({ session, slider, agent }: { session: Session; slider: Slider; agent: number }) {
   const { setup } = session.state.value;
   const value = sliderValue(setup, slider, agent);
@@ -45,7 +72,7 @@ function SliderRow({ session, slider, agent }: { session: Session; slider: Slide
   return (
     <div class="slider">
       <span class="label">
-        {slider.symbol && <i class="symbol">{slider.symbol}</i>} {label}
+        {slider.symbol && <i class="symbol">{symbols(slider.symbol)}</i>} {label}
         {slider.unit && <span class="unit"> [{slider.unit}]</span>}
       </span>
       {slider.choices ? (

@@ -2,9 +2,11 @@
 
 import type {
   Brain,
+  Case,
   Command,
   Engine,
   Fault,
+  Film,
   Lesson,
   MapActivity,
   Progress,
@@ -24,6 +26,8 @@ export type BareBrain = Omit<Brain, "associations"> & {
     output: Bare<MapActivity>;
   })[];
 };
+
+export type BareFilm = Omit<Film, "activities">;
 
 function filled(brain: BareBrain, activities: Float32Array): Brain {
   let at = 0;
@@ -75,6 +79,25 @@ export class LocalEngine implements Engine {
   async apply(command: Command): Promise<State> {
     this.session.apply(JSON.stringify(command));
     return this.state();
+  }
+
+  async goOn(command: Command): Promise<State> {
+    this.session.goOn(JSON.stringify(command));
+    return this.state();
+  }
+
+  async film(agent: number, ahead: number): Promise<Film> {
+    const film = this.session.film(agent, ahead);
+    try {
+      const told: BareFilm = JSON.parse(film.told());
+      return { ...told, activities: film.activities() };
+    } finally {
+      film.free();
+    }
+  }
+
+  async palmCase(fromWrist: number): Promise<Case> {
+    return JSON.parse(this.session.palmCase(fromWrist));
   }
 
   async undo(): Promise<State> {
@@ -155,7 +178,7 @@ export function faultOf(thrown: unknown): Fault {
 /** The buffers of a value that can change owner in place of being copied. */
 export function transferable(value: unknown): ArrayBuffer[] {
   if (ArrayBuffer.isView(value)) return [value.buffer as ArrayBuffer];
-  const { activity, associations } = (value ?? {}) as Partial<MapActivity & Brain>;
+  const { activity, activities, associations } = (value ?? {}) as Partial<MapActivity & Film & Brain>;
   const maps = associations?.flatMap(({ input, output }) => [input.activity, output.activity]) ?? [];
-  return [activity ?? [], maps].flat().map((array) => array.buffer as ArrayBuffer);
+  return [activity ?? [], activities ?? [], maps].flat().map((array) => array.buffer as ArrayBuffer);
 }

@@ -31,6 +31,8 @@ export type AgentSetup =
   | { kind: "random" }
   | { kind: "scripted" }
   | { kind: "oracle" }
+  /** In grasping: bends the elbow until the palm touches, and closes the hand. */
+  | { kind: "approach" }
   /** A network trained elsewhere, given to the engine by addPolicy. */
   | { kind: "policy"; name: string };
 
@@ -60,7 +62,7 @@ export interface State {
   episode: EpisodeState | null;
   curve: CurvePoint[];
   commands: number; // length of the record
-  undoable: number; // how many of the last commands can be undone
+  undoable: number; // how many times undo can take something back
   hash: string; // of all that commands changed, 16 hex digits
 }
 
@@ -75,6 +77,7 @@ export interface AgentState {
 
 export interface EpisodeState {
   case: Case;
+  palm: number | null; // how far from the wrist the ball meets the palm when the elbow alone bends, if it does
   step: number;
   seconds: number; // simulated
   /** For each agent. */
@@ -119,9 +122,17 @@ export interface Sight {
   senses: Record<string, number[]>; // the observation by name
 }
 
+/** What the neurons along an axis of a map stand for. */
+export interface Axis {
+  name: string;
+  unit: string; // empty if it has none
+  range: number[]; // what the first and the last neuron prefer
+}
+
 export interface MapActivity {
   name: string;
   shape: number[]; // neurons along the axes
+  axes: Axis[];
   activity: Float32Array; // last axis fastest, for both kinds of map
 }
 
@@ -135,6 +146,18 @@ export interface Brain {
     silencedOutputs: number[];
   }[];
   decided: { name: string; value: number; unit: string }[]; // what the output maps are read out as
+}
+
+/** A babble to look at, before it is learnt from. */
+export interface Film {
+  number: number; // of the babble, from 1 on
+  period: number; // time from one frame to the next [s]
+  frames: Scene[];
+  moments: number[]; // numbers of the frames in which the agent learns, if it can learn from this babble
+  learnable: boolean;
+  outcome: string;
+  /** For each moment, of each association the input map's, for what was seen, then the output map's, for what was done. */
+  activities: Float32Array;
 }
 
 export interface Lesson {
@@ -195,7 +218,13 @@ export interface Engine {
   /** Begin anew with a setup; the record is empty. */
   open(setup: Setup): Promise<State>;
   apply(command: Command): Promise<State>;
+  /** The same as a part of what was done before: undo takes both back together. */
+  goOn(command: Command): Promise<State>;
   undo(): Promise<State>;
+  /** The babble that comes after so many others from here on. Looking at it changes nothing. */
+  film(agent: number, ahead: number): Promise<Film>;
+  /** The case on the stage with the ball so far from the wrist when the elbow alone bends until the palm touches it. */
+  palmCase(fromWrist: number): Promise<Case>;
   state(): Promise<State>;
   scene(agent: number): Promise<Scene>;
   sight(agent: number): Promise<Sight>;

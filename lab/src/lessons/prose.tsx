@@ -22,8 +22,8 @@ export function inline(text: string): ComponentChildren[] {
 }
 
 /** Letters after an underscore are an index, after a caret an exponent. */
-function symbols(text: string): ComponentChildren[] {
-  return text.split(/(?<=[\p{L}\p{M}])([_^][\p{L}\p{N}]+)/u).map((piece, at) => {
+export function symbols(text: string): ComponentChildren[] {
+  return text.split(/(?<=[\p{L}\p{M})])([_^][\p{L}\p{N}]+)/u).map((piece, at) => {
     if (at % 2 === 0) return piece;
     return piece.startsWith("_") ? <sub>{piece.slice(1)}</sub> : <sup>{piece.slice(1)}</sup>;
   });

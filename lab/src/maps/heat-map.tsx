@@ -1,8 +1,8 @@
 /** A map of neurons in colours, to look at by pointer and keyboard. */
-import { useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
-import type { MapActivity } from "../engine/contract";
+import { useId, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
+import type { Axis, MapActivity } from "../engine/contract";
 import { ACTIVITY, type ColourTable, gradient } from "./colours";
-import { indices, type Layout, layoutOf } from "./layout";
+import { axesOf, indices, type Layout, layoutOf } from "./layout";
 import { paint } from "./paint";
 
 export interface HeatMapProps {
@@ -72,6 +72,7 @@ export function HeatMap(props: HeatMapProps) {
     } else return;
     event.preventDefault();
   };
+  const axes = useId();
   const told = cursor === null ? summary(props) : describeNeuron(props, cursor);
   return (
     <figure class="map">
@@ -83,6 +84,7 @@ export function HeatMap(props: HeatMapProps) {
         role="application"
         aria-roledescription="map of neurons"
         aria-label={`${title}, ${shape} neurons. ${told}`}
+        aria-describedby={axes}
         onPointerMove={onPointer}
         onPointerDown={(event) => {
           event.currentTarget.setPointerCapture(event.pointerId);
@@ -103,12 +105,47 @@ export function HeatMap(props: HeatMapProps) {
           class={brush ? "brush" : undefined}
         />
       </div>
+      <Axes id={axes} map={map} fromTop={props.fromTop ?? false} />
       <Legend low={props.low} high={props.high} colours={props.colours ?? ACTIVITY} />
       <p class="told" aria-live={byKey ? "polite" : "off"}>
         {told}
       </p>
     </figure>
   );
+}
+
+/** What the axes of a map stand for, in words; the arrows are for the eye. */
+function Axes({ id, map, fromTop }: { id: string; map: MapActivity; fromTop: boolean }) {
+  const { up, across } = axesOf(map.shape.length);
+  return (
+    <p class="axes" id={id}>
+      <Way arrow="→" name="To the right" axes={across.map((axis) => map.axes[axis]!)} />
+      <Way
+        arrow={fromTop ? "↓" : "↑"}
+        name={fromTop ? "Down" : "Up"}
+        axes={up.map((axis) => map.axes[axis]!)}
+      />
+    </p>
+  );
+}
+
+function Way({ arrow, name, axes }: { arrow: string; name: string; axes: Axis[] }) {
+  const [inner, ...outer] = axes.map(axisText).reverse();
+  if (inner === undefined) return null;
+  return (
+    <span>
+      <span aria-hidden="true">{arrow}</span>
+      <span class="hidden">{name}:</span> {inner}
+      {outer.map((text) => `; from block to block ${text}`)}
+      <span class="hidden">. </span>
+    </span>
+  );
+}
+
+/** "pan [share of range], 0 to 1". */
+export function axisText({ name, unit, range }: Axis): string {
+  const [low, high] = range.map((value) => minus(Number(value.toFixed(2))));
+  return `${name}${unit && ` [${unit}]`}, ${low} to ${high}`;
 }
 
 function Legend({ low, high, colours }: { low: number; high: number; colours: ColourTable }) {
@@ -128,20 +165,32 @@ export function short(value: number): string {
 function summary({ map, silenced }: HeatMapProps): string {
   const [peak, most] = strongest(map.activity);
   const dead = silenced?.length ? `; ${silenced.length} silenced` : "";
-  if (most === 0) return `no activity${dead}`;
+  if (most === 0) return `nowhere more than 0${dead}`;
   return `most: ${short(most)} at ${placeText(peak, map)}${dead}`;
 }
 
 function describeNeuron({ map, silenced }: HeatMapProps, neuron: number): string {
   const dead = silenced?.includes(neuron) ? ", silenced" : "";
-  return `neuron ${placeText(neuron, map)}: ${short(map.activity[neuron] ?? 0)}${dead}`;
+  return `${short(map.activity[neuron] ?? 0)} at ${placeText(neuron, map)}${dead}`;
 }
 
-function placeText(neuron: number, map: MapActivity): string {
-  return indices(neuron, map.shape)
-    .map((index) => index + 1)
-    .join(", ");
+/** What a neuron prefers: "pan 40 % of range, tilt 65 % of range". */
+export function placeText(neuron: number, { shape, axes }: MapActivity): string {
+  const values = indices(neuron, shape).map((index, at) => {
+    const { name, unit, range } = axes[at]!;
+    const [low = 0, high = 0] = range;
+    return `${name} ${valueText(low + ((high - low) * index) / (shape[at]! - 1), unit)}`;
+  });
+  return values.reverse().join(", ");
 }
+
+function valueText(value: number, unit: string): string {
+  if (unit === "share of range") return `${minus(Math.round(100 * value))} % of range`;
+  if (unit === "deg") return `${minus(Math.round(value))}°`;
+  return `${minus(Number(value.toFixed(2)))}${unit && ` ${unit}`}`;
+}
+
+const minus = (value: number) => String(value).replace("-", "−");
 
 /** The first of the greatest values. */
 export function strongest(activity: Float32Array): [number, number] {

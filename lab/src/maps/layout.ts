@@ -52,7 +52,8 @@ export function indices(neuron: number, shape: number[]): number[] {
   return at;
 }
 
-function axesOf(count: number): { up: number[]; across: number[] } {
+/** Which axes go up and which across, the outermost first. */
+export function axesOf(count: number): { up: number[]; across: number[] } {
   if (count === 1) return { up: [], across: [0] };
   if (count === 3) return { up: [1], across: [0, 2] };
   const axes = Array.from({ length: count }, (_, axis) => axis);

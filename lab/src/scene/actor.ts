@@ -33,6 +33,7 @@ interface Body {
   from: Pose;
   to: Pose;
   part: string;
+  colour: Color; // the engine's
 }
 
 export class Actor {
@@ -93,10 +94,12 @@ export class Actor {
 
   paint(palette: Palette): void {
     this.palette = palette;
-    for (const { mesh, part, shadow } of this.bodies) {
+    for (const { mesh, part, colour, shadow } of this.bodies) {
       const material = mesh.material as MeshLambertMaterial;
       if (part === "ground") material.color.setHex(palette.ground);
       else if (this.agent > 0) material.color.setHex(palette.agents[1]);
+      else if (part === "obstacle" && palette.obstacle !== null) material.color.setHex(palette.obstacle);
+      else material.color.copy(colour);
       if (shadow) (shadow.material as MeshBasicMaterial).opacity = palette.shadow;
     }
   }
@@ -124,7 +127,8 @@ export class Actor {
         shadow.renderOrder = 1;
         this.group.add(shadow);
       }
-      return { mesh, shadow, from: pose, to: pose, part: solid.part };
+      const colour = (mesh.material as MeshLambertMaterial).color.clone();
+      return { mesh, shadow, from: pose, to: pose, part: solid.part, colour };
     });
     this.paint(this.palette);
   }

@@ -96,6 +96,8 @@ class View implements SceneView {
   private arm: Arm | null = null;
   private theme: Theme;
   private pending = 0;
+  /** Whether the shaders are being compiled, or done: until then nothing is drawn. */
+  private shaders: "none" | "compiling" | "ready" = "none";
   private drag: (next: Case) => Promise<void> = () => Promise.resolve();
   private say: (text: string) => void = () => undefined;
 
@@ -111,6 +113,7 @@ class View implements SceneView {
     this.armLine.visible = false;
     this.armLine.frustumCulled = false;
     this.stage.add(new HemisphereLight(0xffffff, 0x8a8f99, 2), sun(), this.grid, this.armLine);
+    this.renderer.debug.checkShaderErrors = false; // It would wait for each of them.
     canvas.addEventListener("webglcontextrestored", () => this.draw());
     this.observer.observe(this.frame);
     this.resize();
@@ -138,7 +141,19 @@ class View implements SceneView {
       this.lay(first);
     }
     this.standHandles();
+    this.compile();
     this.draw();
+  }
+
+  /** Compiles the shaders of what is shown first beside other work. */
+  private compile(): void {
+    if (this.shaders !== "none") return;
+    this.shaders = "compiling";
+    const ready = () => {
+      this.shaders = "ready";
+      this.draw();
+    };
+    this.renderer.compileAsync(this.stage, this.orbit.camera).then(ready, ready);
   }
 
   setCase(given: Case, canDrag: boolean): void {
@@ -317,7 +332,7 @@ class View implements SceneView {
 
   /** Draws at the next frame, and goes on while something glides. */
   private draw(): void {
-    if (this.pending !== 0) return;
+    if (this.pending !== 0 || this.shaders !== "ready") return;
     this.pending = requestAnimationFrame((now) => {
       this.pending = 0;
       const gliding = this.players.map(({ actor }) => actor.glide(now)).includes(true);

@@ -1,6 +1,7 @@
 /** Babbling in slices, so that the page stays alive and can be stopped. */
 import type { State } from "../engine/contract";
 import type { Session } from "./session";
+import { watchBabble } from "./watching";
 import { pause, Slices, type Work } from "./work";
 
 /** Test cases of a point of the learning curve, by task: a grasp takes longer to play. */
@@ -18,6 +19,7 @@ export async function babble(session: Session, babbles: number): Promise<void> {
     const done = await babbleSlices(session, work, babbles, 0);
     session.said.value = `Learnt from ${done.toLocaleString("en")} ${done === 1 ? "babble" : "babbles"}.`;
   } finally {
+    session.watched.value = null;
     await session.showSlices();
     work.end();
   }
@@ -27,7 +29,7 @@ export async function babble(session: Session, babbles: number): Promise<void> {
 export async function test(session: Session): Promise<void> {
   const work = session.begin("Testing", null);
   try {
-    await testOnce(session);
+    await testOnce(session, work);
     session.said.value = `Tested: ${shares(session.state.value)} of the cases succeeded.`;
   } finally {
     work.end();
@@ -42,7 +44,7 @@ export async function babbleUntilGood(session: Session, goal: number): Promise<v
   let sinceBest = 0;
   try {
     while (!work.stopped) {
-      const success = await testOnce(session);
+      const success = await testOnce(session, work);
       if (success > best) [best, sinceBest] = [success, 0];
       else sinceBest += 1;
       if (success >= goal || sinceBest >= PATIENCE || work.stopped) break;
@@ -50,6 +52,7 @@ export async function babbleUntilGood(session: Session, goal: number): Promise<v
     }
     session.said.value = verdict(work.stopped, best, goal);
   } finally {
+    session.watched.value = null;
     await session.showSlices();
     work.end();
   }
@@ -67,9 +70,13 @@ async function babbleSlices(session: Session, work: Work, babbles: number, befor
   let done = 0;
   let showNext = performance.now() + SHOWN_EVERY_MS;
   while (done < babbles && !work.stopped) {
+    if (session.babblingSpeed.value !== Number.POSITIVE_INFINITY) {
+      if (await watchBabble(session, work)) work.report(before + ++done);
+      continue;
+    }
     const n = slices.next(babbles - done);
     const began = performance.now();
-    await session.applySlice({ do: "babble", n });
+    await session.applySlice({ do: "babble", n }, work);
     const now = performance.now();
     slices.took(n, now - began);
     done += n;
@@ -84,9 +91,9 @@ async function babbleSlices(session: Session, work: Work, babbles: number, befor
   return before + done;
 }
 
-async function testOnce(session: Session): Promise<number> {
+async function testOnce(session: Session, work: Work): Promise<number> {
   const n = TEST_CASES[session.task.value] ?? 40;
-  const { curve, agents } = await session.apply({ do: "test", n });
+  const { curve, agents } = await session.apply({ do: "test", n }, work);
   const point = curve.at(-1)!;
   return Math.max(...point.successes.filter((_, place) => agents[place]!.learns).map((k) => k / point.cases));
 }

@@ -18,7 +18,7 @@ export async function play(session: Session): Promise<void> {
     while (!work.stopped && runs(session.state.value.episode)) {
       const n = stepsDue(session.speed.value, performance.now() - before) || slices.next(MOST_STEPS);
       before = performance.now();
-      await session.apply({ do: "step", n });
+      await session.apply({ do: "step", n }, work);
       const took = performance.now() - before;
       slices.took(n, took);
       work.report(session.state.value.episode?.step ?? 0);

@@ -6,7 +6,11 @@ import { same } from "../link-values";
 import { type Control, isControl, isView, type View } from "../page-state";
 import { addShippedPolicies } from "./policies";
 import { type Shown, shownOf } from "./shown";
-import { type Job, Work } from "./work";
+import type { Watched } from "./watching";
+import { type Job, pause, Work } from "./work";
+
+/** How often it is looked whether a pause is over. */
+const PAUSED_MS = 30;
 
 export class Session {
   readonly state: Signal<State>;
@@ -22,12 +26,18 @@ export class Session {
   readonly linkFaults = signal<string[]>([]);
   /** What happened last, for the status line. */
   readonly said = signal("");
-  /** Simulated seconds in a second; Infinity is as fast as it goes. */
+  /** Simulated seconds in a second while an episode plays; Infinity is as fast as it goes. */
   readonly speed = signal(1);
+  /** The same while agents babble: slower than Infinity, the babbles are shown. */
+  readonly babblingSpeed = signal(Number.POSITIVE_INFINITY);
+  /** The babble that is shown. */
+  readonly watched = signal<Watched | null>(null);
+  readonly paused = signal(false);
   readonly task = computed(() => this.taskOf(this.state.value.setup.env));
   readonly progress = computed(() => this.shown.value.progress);
   private work: Work | null = null;
   private sliced: State | null = null;
+  private steps = 0;
 
   private constructor(
     readonly engine: Engine,
@@ -60,21 +70,27 @@ export class Session {
     return this.registry.environments.find(({ id }) => id === env)?.task ?? "";
   }
 
-  /** Does a command, and shows what came of it. A fault is shown, and thrown on. */
-  async apply(command: Command): Promise<State> {
-    const state = await this.take(this.engine.apply(command));
+  /** Does a command, and shows what came of it. A fault is shown, and thrown on. Commands of one work are undone together. */
+  async apply(command: Command, work: Work | null = null): Promise<State> {
+    const state = await this.take(this.carryOut(command, work));
     await this.show();
     return state;
   }
 
   /** A slice of long work: the page learns of it at the next call of `apply` or `showSlices`. */
-  async applySlice(command: Command): Promise<void> {
+  async applySlice(command: Command, work: Work): Promise<void> {
     try {
-      this.sliced = await this.engine.apply(command);
+      this.sliced = await this.carryOut(command, work);
     } catch (error) {
       this.complain(error);
       throw error;
     }
+  }
+
+  private carryOut(command: Command, work: Work | null): Promise<State> {
+    if (work?.begun) return this.engine.goOn(command);
+    if (work) work.begun = true;
+    return this.engine.apply(command);
   }
 
   /** Shows what came of the slices so far. */
@@ -120,7 +136,7 @@ export class Session {
   async undo(): Promise<void> {
     this.stop();
     await this.take(this.engine.undo());
-    this.said.value = "The last command is undone.";
+    this.said.value = "What was done last is undone.";
     await this.show();
   }
 
@@ -151,6 +167,20 @@ export class Session {
   stop(): void {
     this.work?.end();
     this.work = null;
+    this.paused.value = false;
+  }
+
+  /** Waits while what is shown is paused; resolves to whether one step is to be made. */
+  async held(work: Work): Promise<boolean> {
+    while (this.paused.value && this.steps === 0 && !work.stopped) await pause(PAUSED_MS);
+    const stepped = this.paused.value && this.steps > 0;
+    this.steps = stepped ? this.steps - 1 : 0;
+    return stepped;
+  }
+
+  /** Moves what is paused on by one step. */
+  stepOn(): void {
+    this.steps += 1;
   }
 
   /** Runs what a user asked for; a fault is shown instead of thrown. */

@@ -13,6 +13,8 @@ export interface Job {
 
 export class Work {
   stopped = false;
+  /** Whether some of it is done: undo takes the rest back together with that. */
+  begun = false;
   private readonly began = performance.now();
 
   constructor(

@@ -1,6 +1,6 @@
 /** The page: header, lesson, views, controls, and a line that says what happens. */
 import type { ComponentChildren } from "preact";
-import { useEffect } from "preact/hooks";
+import { useEffect, useState } from "preact/hooks";
 import { AgentControls } from "../controls/agents";
 import { BabbleControls } from "../controls/babble";
 import { BeginControls } from "../controls/begin";
@@ -9,6 +9,7 @@ import { RecallControls } from "../controls/recall";
 import { RuleControls } from "../controls/rule";
 import { SliderControls } from "../controls/sliders";
 import { LessonPanel } from "../lessons/panel";
+import { VIEWS } from "../page-state";
 import type { Session } from "../session/session";
 import { agentTitle } from "../views/agent-title";
 import { BrainView } from "../views/brain-view";
@@ -37,6 +38,7 @@ export function App({ session }: { session: Session }) {
 
 /** The views that are shown. The controls come after the first one, for narrow pages. */
 function Views({ session }: { session: Session }) {
+  const drawn = useOneByOne();
   const [first, ...others] = [
     session.sees("scene") && (
       <View key="scene" name="scene" title="Scene">
@@ -69,9 +71,20 @@ function Views({ session }: { session: Session }) {
         <BeginControls session={session} />
         <FileControls session={session} />
       </section>
-      {others}
+      {others.slice(0, drawn)}
     </>
   );
+}
+
+/** Counts up from 0, each time in a task of its own, so that no task draws more than one view. */
+function useOneByOne(): number {
+  const [count, setCount] = useState(0);
+  useEffect(() => {
+    if (count === VIEWS.length) return;
+    const timer = setTimeout(() => setCount(count + 1));
+    return () => clearTimeout(timer);
+  }, [count]);
+  return count;
 }
 
 /** Ctrl+Z undoes the last command, except where it undoes typing. */

@@ -32,7 +32,7 @@ export function Header({ session }: { session: Session }) {
       </fieldset>
       <CopyLink />
       <label class="theme">
-        <span class="hidden">Colours</span>
+        Colours{" "}
         <select value={theme.value} onChange={(event) => setTheme(event.currentTarget.value as Theme)}>
           <option value="auto">as the system</option>
           <option value="light">light</option>

@@ -1,6 +1,6 @@
 import type { Setup } from "../engine/contract";
 
-const KINDS = { random: "Random", scripted: "Scripted", oracle: "Oracle" };
+const KINDS = { random: "Random", scripted: "Scripted", oracle: "Oracle", approach: "Approach" };
 
 /** What to call an agent of a setup. */
 export function agentTitle(setup: Setup, place: number): string {

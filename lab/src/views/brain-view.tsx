@@ -7,9 +7,16 @@ import { LearningCurve } from "./learning-curve";
 import { Outcomes } from "./outcomes";
 
 export function BrainView({ session }: { session: Session }) {
-  const { brain } = session.shown.value;
+  const watched = session.watched.value;
+  const brain = watched?.maps ?? session.shown.value.brain;
   return (
     <>
+      {watched?.maps && (
+        <p class="caption">
+          Babble {watched.number}. Input maps: what was seen. Output maps: what was done. The rule changes the
+          weights between neurons that are active in both, if the babble ends well.
+        </p>
+      )}
       {brain ? (
         <Maps session={session} brain={brain} />
       ) : (
@@ -66,13 +73,12 @@ function Maps({ session, brain }: { session: Session; brain: Brain }) {
           brush={canLesion && brush.value ? radius.value : null}
         />
       ))}
-      <p class="caption">
-        Read out of the output maps:{" "}
-        {brain.decided
-          .map(({ name, value, unit }) => `${name} ${value.toFixed(2)} ${unit}`.trim())
-          .join("; ")}
-        .
-      </p>
+      {!session.watched.value && <ReadOut brain={brain} />}
     </>
   );
+}
+
+function ReadOut({ brain }: { brain: Brain }) {
+  const numbers = brain.decided.map(({ name, value, unit }) => `${name} ${value.toFixed(2)} ${unit}`.trim());
+  return <p class="caption">Read out of the output maps: {numbers.join("; ")}.</p>;
 }

@@ -17,6 +17,9 @@ export function EyeView({ session }: { session: Session }) {
   const input = brain?.associations[0];
   return (
     <div class="figures">
+      {session.watched.value && (
+        <p class="caption whole">These show the case on the stage, not the babble.</p>
+      )}
       <Picture
         pixels={pictures.eye}
         mark={sight.centroid}

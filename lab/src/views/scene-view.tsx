@@ -43,9 +43,10 @@ export function SceneView({ session }: { session: Session }) {
   // Read here, so that the effect runs again when they change.
   const { scenes } = session.shown.value;
   const { episode } = session.state.value;
+  const watched = session.watched.value;
   useEffect(() => {
     if (drawn.current) show(drawn.current, session);
-  }, [scenes, episode]);
+  }, [scenes, episode, watched]);
   return (
     <>
       <div class="scene-place" ref={container} />
@@ -64,15 +65,23 @@ export function SceneView({ session }: { session: Session }) {
   );
 }
 
-const steps = new WeakMap<Drawn, number>();
+/** What a view showed last: the number of a babble, or the step of an episode. */
+const last = new WeakMap<Drawn, { babble: number | null; step: number }>();
 
 function show(view: Drawn, session: Session): void {
   const { scenes } = session.shown.value;
   if (scenes.length === 0) return;
   const { episode } = session.state.value;
-  const step = episode?.step ?? 0;
-  if (step < (steps.get(view) ?? 0)) view.clearTrails();
-  steps.set(view, step);
+  const watched = session.watched.value;
+  const [babble, step] = [watched?.number ?? null, episode?.step ?? 0];
+  const before = last.get(view) ?? { babble: null, step: 0 };
+  if (babble !== before.babble || step < before.step) view.clearTrails();
+  last.set(view, { babble, step });
+  if (watched) {
+    view.show([watched.scene], babble === before.babble ? watched.seconds : 0);
+    view.setCase({}, false);
+    return;
+  }
   const playing = session.job.value !== null && runs(episode);
   view.show(scenes, playing ? Math.max(FRAME_SECONDS, CONTROL_SECONDS / session.speed.value) : 0);
   view.setCase(episode?.case ?? {}, episode !== null && !playing);

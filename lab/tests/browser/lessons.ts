@@ -26,7 +26,7 @@ const setUp =
 const playUntil =
   (outcome: RegExp): Deed =>
   async (page) => {
-    await page.getByLabel("speed").selectOption("Infinity");
+    await page.getByLabel("playing speed").selectOption("Infinity");
     for (let episodes = 0; episodes < 40; episodes++) {
       await next(page);
       await expect(button(page, "One step")).toBeEnabled();
@@ -44,6 +44,16 @@ const move =
     await page.locator(`.scene-handle[data-part="${part}"]`).focus();
     await page.keyboard.press(key);
     await page.keyboard.press("Enter");
+  };
+
+const playAlongThePalm =
+  (centimetres: number): Deed =>
+  async (page) => {
+    const number = page.getByLabel("Ball along the palm, from the wrist, as a number");
+    await number.fill(String(centimetres));
+    await number.press("Enter");
+    await expect(button(page, "One step")).toBeEnabled();
+    await run(page, "Play");
   };
 
 const silenceHalf: Deed = async (page) => {
@@ -91,6 +101,7 @@ export const DEEDS: Record<string, Deed[][]> = {
     [babble("Babble 100 ×"), test],
     [setUp(1), test, playUntil(/success/)],
     [setUp(2), test, playUntil(/timeout/)],
+    [setUp(3), playAlongThePalm(2), playAlongThePalm(4)],
   ],
   chain: [
     [times(10, "Babble once"), test, babble("Babble 100 ×"), test],

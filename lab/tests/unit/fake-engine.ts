@@ -5,6 +5,7 @@ import type {
   Command,
   Engine,
   Fault,
+  Film,
   Registry,
   Scene,
   Setup,
@@ -60,8 +61,12 @@ export function fakeEngine(fake: Partial<Fake> = {}): { engine: Engine; fake: Fa
   let state = opened(SETUP);
 
   const apply = (command: Command): State => {
+    state = { ...state, undoable: state.undoable + 1 };
+    return goOn(command);
+  };
+  const goOn = (command: Command): State => {
     told.commands.push(command);
-    state = { ...state, commands: state.commands + 1, undoable: state.undoable + 1 };
+    state = { ...state, commands: state.commands + 1 };
     const [agent] = state.agents as [AgentState];
     if (command.do === "babble") {
       const learnt = agent.learnt + command.n;
@@ -70,8 +75,15 @@ export function fakeEngine(fake: Partial<Fake> = {}): { engine: Engine; fake: Fa
       const successes = [Math.round(command.n * told.success(agent.learnt))];
       state.curve = [...state.curve, { learnt: [agent.learnt], cases: command.n, successes, outcomes: [{}] }];
     } else if (command.do === "recall") {
-      const episode = { case: {}, step: 0, seconds: 0, running: [true], outcome: ["running"], reward: [0] };
-      state.episode = episode;
+      state.episode = {
+        case: {},
+        palm: null,
+        step: 0,
+        seconds: 0,
+        running: [true],
+        outcome: ["running"],
+        reward: [0],
+      };
     } else if (command.do === "step" && state.episode) {
       const step = Math.min(told.steps, state.episode.step + command.n);
       const running = [step < told.steps];
@@ -92,6 +104,8 @@ export function fakeEngine(fake: Partial<Fake> = {}): { engine: Engine; fake: Fa
       return state;
     },
     apply,
+    goOn,
+    film: (_agent: never, ahead: number): Film => film(state.agents[0]!.babbled + ahead),
     undo: () => state,
     scene: () => SCENE,
     sight: () => SIGHT,
@@ -102,6 +116,20 @@ export function fakeEngine(fake: Partial<Fake> = {}): { engine: Engine; fake: Fa
     Object.entries(methods).map(([name, method]) => [name, async (...args: never[]) => method(...args)]),
   );
   return { engine: engine as unknown as Engine, fake: told };
+}
+
+/** Every other babble can be learnt from. */
+function film(before: number): Film {
+  const learnable = before % 2 === 1;
+  return {
+    number: before + 1,
+    period: 0.05,
+    frames: Array.from({ length: 4 }, () => SCENE),
+    moments: [2],
+    learnable,
+    outcome: learnable ? "success" : "collision",
+    activities: new Float32Array(),
+  };
 }
 
 function opened(setup: Setup): State {

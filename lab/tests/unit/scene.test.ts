@@ -74,6 +74,7 @@ describe("what is seen", () => {
   });
   const episode = (outcome: string): EpisodeState => ({
     case: {},
+    palm: null,
     step: 14,
     seconds: 0.7,
     running: [outcome === "running"],

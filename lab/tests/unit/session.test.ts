@@ -1,8 +1,8 @@
-import { describe, expect, it } from "vitest";
+import { describe, expect, it, vi } from "vitest";
 import { babble, babbleUntilGood, PATIENCE } from "../../src/session/babbling";
 import { play } from "../../src/session/playing";
 import { Session } from "../../src/session/session";
-import { Slices } from "../../src/session/work";
+import { pause, Slices } from "../../src/session/work";
 import { fakeEngine, SETUP } from "./fake-engine";
 
 const learnt = (session: Session) => session.state.value.agents[0]!.learnt;
@@ -70,6 +70,66 @@ describe("babbling", () => {
     const shares = session.state.value.curve.map((point) => point.successes[0]! / point.cases);
     expect(shares.filter((share) => share === 0.5).length).toBe(PATIENCE + 1);
     expect(session.said.value).toMatch(/no better/);
+  });
+});
+
+describe("watching", () => {
+  const watching = async (speed: number) => {
+    vi.stubGlobal("matchMedia", () => ({ matches: false }));
+    const { engine, fake } = fakeEngine();
+    const session = await Session.start(engine, "");
+    session.babblingSpeed.value = speed;
+    const seen: number[] = [];
+    session.watched.subscribe((watched) => {
+      if (watched !== null && seen.at(-1) !== watched.number) seen.push(watched.number);
+    });
+    return { session, fake, seen };
+  };
+
+  it("shows each babble, also those that cannot be learnt from, and learns as at any speed", async () => {
+    const { session, fake, seen } = await watching(20);
+    await babble(session, 3);
+    expect(seen).toEqual([1, 2, 3, 4, 5, 6]);
+    expect(fake.commands).toEqual(Array(3).fill({ do: "babble", n: 1 }));
+    expect(session.state.value.undoable).toBe(3);
+    expect(session.watched.value).toBeNull();
+  });
+
+  it("goes on fast and unseen, when the speed is changed meanwhile", async () => {
+    const { session, seen } = await watching(1);
+    const done = babble(session, 50);
+    await vi.waitUntil(() => seen.length > 0);
+    session.babblingSpeed.value = Number.POSITIVE_INFINITY;
+    await done;
+    expect(learnt(session)).toBe(50);
+    expect(seen.length).toBeLessThanOrEqual(2);
+  });
+
+  it("learns nothing from a babble that was stopped, and nothing while it is paused", async () => {
+    const { session, fake, seen } = await watching(20);
+    session.paused.value = false;
+    const done = babble(session, 1);
+    session.paused.value = true;
+    await vi.waitUntil(() => seen.length > 0);
+    for (let steps = 0; steps < 3; steps += 1) session.stepOn();
+    await pause(300);
+    expect(fake.commands).toEqual([]);
+    session.stop();
+    await done;
+    expect(fake.commands).toEqual([]);
+    expect(session.paused.value).toBe(false);
+  });
+});
+
+describe("undo", () => {
+  it("takes back a run of babbles as a whole", async () => {
+    const { engine, fake } = fakeEngine();
+    const session = await Session.start(engine, "");
+    await babble(session, 1000);
+    await babbleUntilGood(session, 0);
+    await babble(session, 500);
+    expect(session.state.value.undoable).toBe(3);
+    expect(fake.commands.length).toBeGreaterThan(5);
   });
 });
 

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::marker::PhantomData;
 
+use babble_env::picture::Film;
 use babble_env::{EnvError, Executor, Outcome, Purpose, Stream, Task};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -87,6 +88,18 @@ pub trait Babble: Task {
         stream: &mut Stream,
         all: bool,
     ) -> Result<Vec<Self::Experience>, EnvError>;
+
+    /// The same babble for people to look at, to its end. The marks of the film are the moments of the
+    /// experiences, none of which is left out.
+    ///
+    /// # Errors
+    /// As [`babble`](Self::babble).
+    fn film(
+        &self,
+        options: Self::Options,
+        period_s: Option<f64>,
+        stream: &mut Stream,
+    ) -> Result<(Vec<Self::Experience>, Film), EnvError>;
 
     /// Control steps that a babble takes.
     fn babble_steps(&self, options: Self::Options) -> usize;
@@ -230,6 +243,16 @@ impl<T: Babble> Babbling<T> {
         }
         let mut stream = Stream::new(Purpose::Learning, self.seed, self.babbled - 1);
         task.babble(self.options, self.period_s, &mut stream, false)
+    }
+
+    /// The babble that comes after `ahead` others from here on, for people to look at.
+    ///
+    /// # Errors
+    /// An error of the task.
+    pub fn film(&self, task: &T, ahead: u64) -> Result<(Vec<T::Experience>, Film), EnvError> {
+        let index = self.babbled.saturating_add(ahead);
+        let mut stream = Stream::new(Purpose::Learning, self.seed, index);
+        task.film(self.options, self.period_s, &mut stream)
     }
 
     fn search(

@@ -16,9 +16,9 @@ use crate::chain::acting::ChainPolicy;
 use crate::error::AgentError;
 use crate::grasp::babbling::POSTURES;
 use crate::grasp::policy::{self as grasping, GraspPolicy, RandomActions};
-use crate::grasp::{self, GraspNetwork};
-use crate::learner::{Learner, Practice};
-use crate::network::{Network, Percept, Recall};
+use crate::grasp::{self, ElbowApproach, GraspNetwork};
+use crate::learner::{BabbleFilm, Learner, Practice};
+use crate::network::{Axis, Network, Percept, Recall};
 use crate::policy::{Decisions, Policy, Random};
 use crate::reach::ReachNetwork;
 use crate::reach::policy::{self as reaching, ReachPolicy};
@@ -61,6 +61,18 @@ pub fn reference<'a>(
         "reflex" => boxed(GraspPolicy::new(task, random)),
         _ => boxed(GraspPolicy::new(task, grasp::Oracle)),
     }
+}
+
+/// The agent that bends the elbow until the palm touches an object, and then closes the hand.
+///
+/// # Errors
+/// [`AgentError::Config`] for a task or control in which it cannot act.
+pub fn approach(task: &Arc<dyn AnyTask>) -> Result<Box<dyn Policy>, AgentError> {
+    let task = downcast::<GraspTask>(task).ok_or_else(|| AgentError::Config {
+        field: "env",
+        problem: "there is no palm to touch with but in grasping".to_owned(),
+    })?;
+    Ok(Box::new(ElbowApproach::new(task)?))
 }
 
 /// An agent that acts on decisions which somebody else makes: in reaching, parameters (b1, b2) of a
@@ -175,6 +187,9 @@ pub trait AnyLearner: Any + fmt::Debug + Send + Sync {
     /// As [`Learner::practice`].
     fn practice(&self) -> Practice;
 
+    /// As [`Learner::film`].
+    fn film(&self, task: &Arc<dyn AnyTask>, ahead: u64) -> Result<BabbleFilm, AgentError>;
+
     /// Control steps that a babble takes in a task.
     fn babble_steps(&self, task: &Arc<dyn AnyTask>) -> Result<usize, AgentError>;
 
@@ -186,6 +201,9 @@ pub trait AnyLearner: Any + fmt::Debug + Send + Sync {
 
     /// As [`Network::input_shapes`].
     fn input_shapes(&self) -> Vec<Vec<usize>>;
+
+    /// As [`Network::axes`].
+    fn axes(&self) -> Vec<[Vec<Axis>; 2]>;
 
     /// As [`Network::perceive_maps`].
     fn perceive(&self, senses: &[f32]) -> Result<Vec<Percept>, AgentError>;
@@ -284,6 +302,11 @@ impl<N: Network> AnyLearner for Learner<N> {
         Self::practice(self)
     }
 
+    fn film(&self, task: &Arc<dyn AnyTask>, ahead: u64) -> Result<BabbleFilm, AgentError> {
+        let task = downcast::<N::Task>(task).ok_or_else(other_task)?;
+        Self::film(self, &task, ahead)
+    }
+
     fn babble_steps(&self, task: &Arc<dyn AnyTask>) -> Result<usize, AgentError> {
         let task = downcast::<N::Task>(task).ok_or_else(other_task)?;
         Ok(task.babble_steps(self.babbling.options()))
@@ -305,6 +328,10 @@ impl<N: Network> AnyLearner for Learner<N> {
 
     fn input_shapes(&self) -> Vec<Vec<usize>> {
         self.network.input_shapes()
+    }
+
+    fn axes(&self) -> Vec<[Vec<Axis>; 2]> {
+        self.network.axes()
     }
 
     fn perceive(&self, senses: &[f32]) -> Result<Vec<Percept>, AgentError> {

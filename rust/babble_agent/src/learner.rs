@@ -2,12 +2,13 @@
 
 use std::iter;
 
-use babble_env::{Config, Executor, Task};
+use babble_env::picture::Visible;
+use babble_env::{Config, Executor, Outcome, Task};
 use serde::{Deserialize, Serialize};
 
 use crate::babbling::{Babble, Babbling};
 use crate::error::AgentError;
-use crate::network::Network;
+use crate::network::{Activities, Network};
 use crate::rule::RuleOfOnesOwn;
 use crate::tensors::{self, whole_config};
 
@@ -69,6 +70,40 @@ impl<N: Network> Clone for Learner<N> {
             practice: self.practice,
         }
     }
+}
+
+/// A babble for people to look at.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BabbleFilm {
+    /// What there was to see at its beginning, and at the end of each control period.
+    pub frames: Vec<Visible>,
+    /// Moments in which the rule is applied if the babble can be learnt from.
+    pub moments: Vec<FilmMoment>,
+    /// Whether it can be learnt from.
+    pub learnable: bool,
+    /// How it ended.
+    pub outcome: Outcome,
+}
+
+impl BabbleFilm {
+    /// Adds a moment. There is none where the eye does not see the object, or the hand did not get so far: maps
+    /// have no activity then.
+    fn push(&mut self, moment: FilmMoment) {
+        let finite = |all: &[f32]| all.iter().all(|x| x.is_finite());
+        let known = |maps: &Activities| finite(&maps.g) && finite(&maps.a);
+        if moment.activities.iter().all(known) {
+            self.moments.push(moment);
+        }
+    }
+}
+
+/// Activities of all maps in a frame of a film.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FilmMoment {
+    /// Number of the frame.
+    pub frame: usize,
+    /// What was seen and what was done, for each association.
+    pub activities: Vec<Activities>,
 }
 
 /// What is known of a learner beside its weights.
@@ -164,17 +199,14 @@ impl<N: Network> Learner<N> {
         executor: &mut Executor,
     ) -> Result<(), AgentError> {
         self.taught(task, n, executor, |network, experiences, executor| {
-            let taught = || {
-                let mut chunks = experiences.chunks(CHUNK);
-                chunks.try_for_each(|chunk| network.learn(chunk))
-            };
-            #[cfg(feature = "threads")]
-            return executor.run(taught)?;
-            #[cfg(not(feature = "threads"))]
-            {
-                let (_, mut taught) = (executor, taught);
-                taught()
+            for chunk in experiences.chunks(CHUNK) {
+                executor.check()?;
+                #[cfg(feature = "threads")]
+                executor.run(|| network.learn(chunk))??;
+                #[cfg(not(feature = "threads"))]
+                network.learn(chunk)?;
             }
+            Ok(())
         })
     }
 
@@ -189,9 +221,12 @@ impl<N: Network> Learner<N> {
         n: usize,
         executor: &mut Executor,
     ) -> Result<(), AgentError> {
-        self.taught(task, n, executor, |network, experiences, _| {
-            let mut chunks = experiences.chunks(CHUNK);
-            chunks.try_for_each(|chunk| network.learn_by(rule, chunk))
+        self.taught(task, n, executor, |network, experiences, executor| {
+            for chunk in experiences.chunks(CHUNK) {
+                executor.check()?;
+                network.learn_by(rule, chunk)?;
+            }
+            Ok(())
         })
     }
 
@@ -223,6 +258,29 @@ impl<N: Network> Learner<N> {
         }
         *self = learning;
         Ok(())
+    }
+
+    /// The babble that comes after `ahead` others from here on, for people to look at. Nothing is learnt
+    /// from it.
+    ///
+    /// # Errors
+    /// [`AgentError::OtherConfig`] for a task of another config than the learner's, or an error of the
+    /// task.
+    pub fn film(&self, task: &N::Task, ahead: u64) -> Result<BabbleFilm, AgentError> {
+        self.check_config(task)?;
+        let (experiences, film) = self.babbling.film(task, ahead)?;
+        let ends = experiences.last().map(N::Task::outcome);
+        let mut made = BabbleFilm {
+            frames: film.frames,
+            moments: Vec::new(),
+            learnable: experiences.iter().any(N::Task::is_learnable),
+            outcome: ends.unwrap_or(Outcome::Running),
+        };
+        for (&frame, one) in film.marks.iter().zip(&experiences) {
+            let activities = self.network.encode(std::slice::from_ref(one))?;
+            made.push(FilmMoment { frame, activities });
+        }
+        Ok(made)
     }
 
     fn check_config(&self, task: &N::Task) -> Result<(), AgentError> {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use babble_brain::association::dot;
 use babble_env::spec::Spec;
-use babble_env::{AnyTask, Config, Executor, Options, registry};
+use babble_env::{AnyTask, Config, Options, registry};
 use serde::{Deserialize, Serialize};
 
 use crate::error::AgentError;
@@ -209,21 +209,6 @@ impl Policy for PolicyNetwork {
 
     fn action_len(&self) -> usize {
         self.bounds.len()
-    }
-
-    fn plan(&self, senses: &[f32], _executor: &mut Executor) -> Result<Vec<Plan>, AgentError> {
-        Ok(vec![Plan::Steps; senses.len() / self.senses_len()])
-    }
-
-    fn decide(
-        &self,
-        _senses: &[f32],
-        _executor: &mut Executor,
-    ) -> Result<Vec<Vec<f64>>, AgentError> {
-        Err(AgentError::Config {
-            field: "agent",
-            problem: "a network that was trained elsewhere decides each step by itself".to_owned(),
-        })
     }
 
     fn act(&self, _plan: &mut Plan, senses: &[f32], action: &mut [f32]) -> Result<(), AgentError> {

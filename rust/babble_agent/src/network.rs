@@ -42,6 +42,43 @@ pub struct Recall {
     pub side: usize,
 }
 
+/// What the neurons along an axis of a map stand for.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Axis {
+    /// The quantity.
+    pub name: &'static str,
+    /// Its unit; empty if it has none.
+    pub unit: &'static str,
+    /// What the first and the last neuron prefer.
+    pub range: [f64; 2],
+}
+
+impl Axis {
+    /// An axis.
+    #[must_use]
+    pub const fn new(name: &'static str, unit: &'static str, range: [f64; 2]) -> Self {
+        Self { name, unit, range }
+    }
+
+    /// Two joint angles or turns of the eye, as shares of their ranges.
+    pub(crate) const fn shares(names: [&'static str; 2]) -> [Self; 2] {
+        let [first, second] = names;
+        let share = "share of range";
+        [
+            Self::new(first, share, [0.0, 1.0]),
+            Self::new(second, share, [0.0, 1.0]),
+        ]
+    }
+
+    /// Opening angles of finger and thumb.
+    pub(crate) const fn hand() -> [Self; 2] {
+        [
+            Self::new("opening of the finger", "deg", [0.0, 90.0]),
+            Self::new("opening of the thumb", "deg", [0.0, 90.0]),
+        ]
+    }
+}
+
 /// How babbles of a network's task are simulated.
 pub type OptionsOf<N> = <<N as Network>::Task as Babble>::Options;
 
@@ -104,6 +141,10 @@ pub trait Network: Clone + Send + Sync + fmt::Debug + 'static {
 
     /// Neurons along the axes of the input map of each association, the last axis fastest.
     fn input_shapes(&self) -> Vec<Vec<usize>>;
+
+    /// What the axes of the input map and of the output map stand for, one entry for each association that
+    /// has maps to show; the last axis is fastest.
+    fn axes(&self) -> Vec<[Vec<Axis>; 2]>;
 
     /// Activities of the input maps for a flat observation, one entry for each association.
     ///

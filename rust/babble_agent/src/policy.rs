@@ -80,18 +80,31 @@ pub trait Policy: fmt::Debug + Send + Sync {
     /// Numbers in an action.
     fn action_len(&self) -> usize;
 
-    /// What to do in episodes that begin with these flat observations, one after the other.
+    /// What to do in episodes that begin with these flat observations, one after the other: unless given,
+    /// to decide at each step.
     ///
     /// # Errors
     /// [`AgentError`] for senses that are not finite or point nowhere, or an error of the executor.
-    fn plan(&self, senses: &[f32], executor: &mut Executor) -> Result<Vec<Plan>, AgentError>;
+    fn plan(&self, senses: &[f32], _executor: &mut Executor) -> Result<Vec<Plan>, AgentError> {
+        Ok(vec![Plan::Steps; senses.len() / self.senses_len()])
+    }
 
     /// What is chosen for each of these flat observations: parameters (b1, b2) of a movement; shoulder,
     /// elbow, and flexions of thumb and finger of a grasp \[rad\].
     ///
     /// # Errors
-    /// As [`plan`](Self::plan); [`AgentError::Config`] for an agent that chooses nothing beforehand.
-    fn decide(&self, senses: &[f32], executor: &mut Executor) -> Result<Vec<Vec<f64>>, AgentError>;
+    /// As [`plan`](Self::plan); [`AgentError::Config`] for an agent that chooses nothing beforehand, which
+    /// all are unless this is given.
+    fn decide(
+        &self,
+        _senses: &[f32],
+        _executor: &mut Executor,
+    ) -> Result<Vec<Vec<f64>>, AgentError> {
+        Err(AgentError::Config {
+            field: "agent",
+            problem: "it decides each step by itself, and chooses nothing beforehand".to_owned(),
+        })
+    }
 
     /// The next action of an episode.
     ///

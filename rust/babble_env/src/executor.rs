@@ -98,6 +98,14 @@ impl Executor {
         self
     }
 
+    /// Whether to go on, for work in the thread that calls: it asks at least once a second.
+    ///
+    /// # Errors
+    /// [`EnvError::Interrupted`] once it was interrupted.
+    pub fn check(&self) -> Result<(), EnvError> {
+        Stop::asking(&self.clock, self.interrupted).check()
+    }
+
     /// How many threads there are.
     #[must_use]
     pub const fn threads(&self) -> usize {
@@ -188,6 +196,10 @@ struct Clock {
     asked: std::sync::atomic::AtomicU64,
 }
 
+#[cfg_attr(
+    not(feature = "threads"),
+    expect(clippy::derivable_impls, reason = "no instant is a default")
+)]
 impl Default for Clock {
     fn default() -> Self {
         Self {
@@ -201,6 +213,10 @@ impl Default for Clock {
 
 impl Clock {
     /// Whether it is time to ask again.
+    #[cfg_attr(
+        not(feature = "threads"),
+        expect(clippy::unused_self, reason = "there is no clock")
+    )]
     fn is_due(&self) -> bool {
         #[cfg(feature = "threads")]
         {

@@ -24,10 +24,10 @@ pub(crate) fn unknown(
 /// The known name that was probably meant by `name`, whatever its case; None if all are more than two edits
 /// away.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let name = name.to_lowercase();
+    let name = name.to_ascii_lowercase();
     known
         .into_iter()
-        .map(|candidate| (edits(&name, &candidate.to_lowercase()), candidate))
+        .map(|candidate| (edits(&name, &candidate.to_ascii_lowercase()), candidate))
         .filter(|&(edits, _)| edits <= MOST_EDITS)
         .min_by_key(|&(edits, _)| edits)
         .map(|(_, candidate)| candidate)

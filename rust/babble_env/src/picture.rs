@@ -75,6 +75,22 @@ impl Visible {
     }
 }
 
+/// What there was to see of a movement, moment by moment.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Film {
+    /// At the beginning, and at the end of each control period.
+    pub frames: Vec<Visible>,
+    /// Numbers of the frames in which something noteworthy happened.
+    pub marks: Vec<usize>,
+}
+
+impl Film {
+    /// Notes that something noteworthy happens in the last frame.
+    pub fn mark(&mut self) {
+        self.marks.push(self.frames.len().saturating_sub(1));
+    }
+}
+
 /// What there is to see.
 #[derive(Debug)]
 pub(crate) struct Scene<'a> {

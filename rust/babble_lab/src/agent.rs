@@ -39,6 +39,8 @@ pub(crate) enum Mind {
     Learner(LearnerMind),
     /// An agent that needs no learning, by name, and how many random choices it has made.
     Reference { name: &'static str, choices: u64 },
+    /// Bends the elbow until the palm touches, and closes the hand.
+    Approach,
     /// A network that was trained elsewhere.
     Policy(Arc<PolicyNetwork>),
 }
@@ -84,6 +86,7 @@ impl Agent {
             AgentSetup::Random {} => Mind::reference("random"),
             AgentSetup::Scripted {} => Mind::reference("scripted"),
             AgentSetup::Oracle {} => Mind::reference("oracle"),
+            AgentSetup::Approach {} => Mind::Approach,
             AgentSetup::Policy { name } => Mind::Policy(policies.get(name, setup)?),
         };
         let mut made = Self {
@@ -100,7 +103,7 @@ impl Agent {
     pub(crate) fn learner(&self) -> Option<&LearnerMind> {
         match &self.mind {
             Mind::Learner(mind) => Some(mind),
-            Mind::Reference { .. } | Mind::Policy(_) => None,
+            Mind::Reference { .. } | Mind::Approach | Mind::Policy(_) => None,
         }
     }
 
@@ -129,6 +132,7 @@ impl Agent {
                 *choices = random.choices();
                 Ok(done)
             }
+            Mind::Approach => Ok(act(&*erased::approach(task)?)?),
             Mind::Policy(network) => Ok(act(&**network)?),
         }
     }
@@ -186,7 +190,7 @@ impl Agent {
         match &self.mind {
             Mind::Learner(mind) => hash.add(&mind.hash.to_le_bytes()),
             Mind::Reference { choices, .. } => hash.add(&choices.to_le_bytes()),
-            Mind::Policy(_) => {}
+            Mind::Approach | Mind::Policy(_) => {}
         }
         for (outcome, count) in &self.recalls {
             hash.add(outcome.as_bytes());

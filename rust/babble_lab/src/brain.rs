@@ -1,5 +1,6 @@
 //! The maps of a learning agent for what it senses now.
 
+pub use babble_agent::network::Axis;
 use serde::Serialize;
 
 use crate::agent::{LearnerMind, task_name};
@@ -14,6 +15,8 @@ pub struct MapActivity {
     pub name: String,
     /// Neurons along the axes, the last axis fastest.
     pub shape: Vec<usize>,
+    /// What the axes stand for.
+    pub axes: Vec<Axis>,
     /// The activities; not part of the JSON, as there are many.
     #[serde(skip)]
     pub activity: Vec<f32>,
@@ -83,22 +86,26 @@ impl Lab {
         let Some(mind) = self.agent(agent)?.learner() else {
             return Ok(None);
         };
-        let senses = &self.stage.players[agent].record()?.senses;
+        let senses = &self.stage.record(agent)?.senses;
         let percepts = mind.learner.perceive(senses)?;
         let recalls = mind.learner.recall(senses)?;
         let shapes = mind.learner.input_shapes();
+        let axes = mind.learner.axes();
         let mut associations = Vec::new();
-        for (i, (percept, recall)) in percepts.into_iter().zip(recalls).enumerate() {
+        let maps = percepts.into_iter().zip(recalls).zip(axes);
+        for (i, ((percept, recall), [of_input, of_output])) in maps.enumerate() {
             associations.push(AssociationView {
                 name: recall.name.to_owned(),
                 input: MapActivity {
                     name: percept.name.to_owned(),
                     shape: shapes[i].clone(),
+                    axes: of_input,
                     activity: percept.activity,
                 },
                 output: MapActivity {
                     name: recall.name.to_owned(),
                     shape: vec![recall.side; 2],
+                    axes: of_output,
                     activity: recall.activity,
                 },
                 silenced_inputs: silenced(mind, i, MapName::Input),
@@ -132,23 +139,33 @@ impl Lab {
         let (n_in, n_out) = (found.n_in(), found.n_out());
         let all = found.weights();
         let input = mind.learner.input_shapes().swap_remove(association);
-        let (name, shape, activity) = match map {
-            MapName::Output => ("input", input, all[neuron * n_in..][..n_in].to_vec()),
+        let [of_input, of_output] = mind.learner.axes().swap_remove(association);
+        let (name, shape, axes, activity) = match map {
+            MapName::Output => {
+                let weights = all[neuron * n_in..][..n_in].to_vec();
+                ("input", input, of_input, weights)
+            }
             MapName::Input => {
                 let weights = (0..n_out).map(|j| all[j * n_in + neuron]);
-                ("output", vec![n_out.isqrt(); 2], weights.collect())
+                (
+                    "output",
+                    vec![n_out.isqrt(); 2],
+                    of_output,
+                    weights.collect(),
+                )
             }
         };
         Ok(MapActivity {
             name: name.to_owned(),
             shape,
+            axes,
             activity,
         })
     }
 
     /// What each number of the observation of an agent belongs to, and the numbers.
     pub(crate) fn senses(&self, agent: usize) -> Result<Vec<(&'static str, Vec<f32>)>, Fault> {
-        let record = self.stage.players[agent].record()?;
+        let record = self.stage.record(agent)?;
         let mut at = 0;
         let mut senses = Vec::new();
         for entry in self.task.spec().senses {

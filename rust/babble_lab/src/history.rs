@@ -35,6 +35,8 @@ pub enum Happened {
         ended: Vec<Option<String>>,
         /// Its case.
         case: Case,
+        /// As [`EpisodeState::palm`](crate::EpisodeState::palm).
+        palm: Option<f64>,
     },
     /// A test.
     Tested {

@@ -3,8 +3,10 @@
 use serde_json::json;
 
 use crate::brain::{Brain, MapActivity};
+use crate::command::Case;
 use crate::expression::RuleExpression;
 use crate::fault::Fault;
+use crate::film::Film;
 use crate::lesson::{Lesson, Progress};
 use crate::record::Record;
 use crate::registry::Registry;
@@ -38,6 +40,8 @@ to_json!(
     State,
     Scene,
     Sight,
+    Film,
+    Case,
     Option<Brain>,
     MapActivity,
     [Lesson],

@@ -73,12 +73,28 @@ impl Lab {
     /// # Errors
     /// A [`Fault`]; everything is then as it was.
     pub fn apply(&mut self, command: &Command) -> Result<(), Fault> {
+        let before = self.carry_out(command)?;
+        self.undo.push(before);
+        Ok(())
+    }
+
+    /// Does what a command says as a part of what was done before: undo takes both back together.
+    ///
+    /// # Errors
+    /// A [`Fault`]; everything is then as it was.
+    pub fn go_on(&mut self, command: &Command) -> Result<(), Fault> {
+        self.carry_out(command)?;
+        Ok(())
+    }
+
+    /// Does what a command says, and returns how everything was before.
+    fn carry_out(&mut self, command: &Command) -> Result<Snapshot, Fault> {
         command.check()?;
         let before = self.snapshot()?;
         let what = match self.perform(command) {
             Ok(what) => what,
             Err(fault) => {
-                self.restore(before)?;
+                self.restore(&before)?;
                 return Err(fault);
             }
         };
@@ -96,9 +112,8 @@ impl Lab {
         } else {
             self.commands.push(command.clone());
             self.history.push(event);
-            self.undo.push(before);
         }
-        Ok(())
+        Ok(before)
     }
 
     /// Knows these policies from now on, which a change of the setup can name.
@@ -106,7 +121,8 @@ impl Lab {
         self.policies = policies;
     }
 
-    /// Takes the last command back, as if it had never been.
+    /// Takes back what was done last, as if it had never been: a command, and those that
+    /// [went on](Self::go_on) with it.
     ///
     /// # Errors
     /// A [`Fault`] if there is none that can be undone.
@@ -115,8 +131,7 @@ impl Lab {
             let problem = "there is nothing to undo";
             return Err(Fault::new("ConfigError", None, problem));
         };
-        self.commands.pop();
-        self.restore(before)
+        self.restore(&before)
     }
 
     /// How things stand.
@@ -181,7 +196,7 @@ impl Lab {
             self.agents[agent].with_policy(seed, &task, |_| Ok(()))
         });
         if let Err(fault) = changed {
-            self.restore(before)?;
+            self.restore(&before)?;
             return Err(fault);
         }
         let known = self.agents.iter().filter_map(Agent::learner);
@@ -301,7 +316,8 @@ impl Lab {
         let (agents, executor) = (&mut self.agents, &mut self.executor);
         let ended = self.stage.step(agents, n, &mut self.cost, executor)?;
         let case = self.stage.case().cloned().unwrap_or_default();
-        Ok(Happened::Stepped { ended, case })
+        let palm = self.stage.palm();
+        Ok(Happened::Stepped { ended, case, palm })
     }
 
     fn test(&mut self, n: u64) -> Result<Happened, Fault> {
@@ -388,26 +404,31 @@ impl Lab {
             setup: Arc::clone(&self.setup),
             agents: self.agents.clone(),
             stage: self.stage.snapshot()?,
-            lengths: [self.curve.len(), self.history.len()],
+            lengths: [self.curve.len(), self.commands.len()],
+            last: self
+                .commands
+                .last()
+                .cloned()
+                .zip(self.history.last().cloned()),
             cost: self.cost,
         })
     }
 
-    fn restore(&mut self, before: Snapshot) -> Result<(), Fault> {
-        let Snapshot {
-            setup,
-            agents,
-            stage,
-            lengths: [curve, history],
-            cost,
-        } = before;
-        self.stage = Stage::restored(&stage)?;
+    fn restore(&mut self, before: &Snapshot) -> Result<(), Fault> {
+        self.stage = Stage::restored(&before.stage)?;
         self.task = Arc::clone(self.stage.task());
-        self.setup = setup;
-        self.agents = agents;
-        self.cost = cost;
+        self.setup = Arc::clone(&before.setup);
+        self.agents.clone_from(&before.agents);
+        self.cost = before.cost;
+        let [curve, commands] = before.lengths;
         self.curve.truncate(curve);
-        self.history.truncate(history);
+        self.commands.truncate(commands);
+        self.history.truncate(commands);
+        // The last ones may have become longer since.
+        if let Some((command, event)) = before.last.clone() {
+            self.commands[commands - 1] = command;
+            self.history[commands - 1] = event;
+        }
         Ok(())
     }
 }

@@ -51,6 +51,10 @@ impl Lab {
             }
             AgentSetup::Scripted {} => return Ok("agent = gym_babble.Scripted(env)\n".to_owned()),
             AgentSetup::Oracle {} => return Ok("agent = gym_babble.Oracle(env)\n".to_owned()),
+            AgentSetup::Approach {} => {
+                let problem = "the agent that bends its elbow is of the lab alone";
+                return Err(Fault::config("agent", problem));
+            }
             AgentSetup::Policy { name } => {
                 let file = literal(&format!("{name}.safetensors").into());
                 return Ok(format!("agent = gym_babble.load_agent({file}, env)\n"));

@@ -123,7 +123,11 @@ impl Lab {
     /// # Errors
     /// A [`Fault`] for an agent that does not exist.
     pub fn scene(&self, agent: usize) -> Result<Scene, Fault> {
-        let visible = self.visible(agent)?;
+        Ok(self.scene_of(&self.visible(agent)?))
+    }
+
+    /// The world that can be seen.
+    pub(crate) fn scene_of(&self, visible: &Visible) -> Scene {
         let body = &self.task.config().body;
         let around = [
             ("eye", babble_body::visual::eye_ball(body)),
@@ -136,7 +140,7 @@ impl Lab {
         };
         let [right, up] =
             [0, 1].map(|i| -> [f64; 3] { visible.camera.rotation.row(i).transpose().into() });
-        Ok(Scene {
+        Scene {
             solids: visible.parts.iter().chain(&around).map(solid).collect(),
             gaze: GazeLine {
                 eye: body.eye.position_m,
@@ -145,7 +149,7 @@ impl Lab {
             camera_frame: [right, up.map(|x| 0.0 - x)],
             field_of_view: visible.field,
             fingertip: visible.tip,
-        })
+        }
     }
 
     /// What the eye of an agent has to do with Eq. 1.
@@ -173,9 +177,7 @@ impl Lab {
     pub fn picture(&self, agent: usize, view: &str, size: [u32; 2]) -> Result<Vec<u8>, Fault> {
         self.agent(agent)?;
         let view: View = view.parse()?;
-        let image = self.stage.players[agent]
-            .batch
-            .picture(0, view, size, None)?;
+        let image = self.stage.seen(agent).picture(0, view, size, None)?;
         let pixels = image.pixels();
         Ok(pixels
             .flat_map(|pixel| [pixel[0], pixel[1], pixel[2], 255])
@@ -184,7 +186,7 @@ impl Lab {
 
     fn visible(&self, agent: usize) -> Result<Visible, Fault> {
         self.agent(agent)?;
-        let visible = self.stage.players[agent].batch.visible(0)?;
+        let visible = self.stage.seen(agent).visible(0)?;
         let nothing = || Fault::config("env", "there is nothing to see in this environment");
         visible.ok_or_else(nothing)
     }

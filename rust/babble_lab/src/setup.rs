@@ -47,6 +47,8 @@ pub enum AgentSetup {
     Scripted {},
     /// Knows the simulation.
     Oracle {},
+    /// In grasping, bends the elbow until the palm touches, and closes the hand.
+    Approach {},
     /// A network that was trained elsewhere and given to the lab by name.
     Policy {
         /// Its name.

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use crate::agent::Agent;
+use crate::command::Command;
 use crate::cost::Cost;
+use crate::history::Event;
 use crate::setup::Setup;
 use crate::stage::StageSnapshot;
 
@@ -18,8 +20,10 @@ pub(crate) struct Snapshot {
     pub(crate) setup: Arc<Setup>,
     pub(crate) agents: Vec<Agent>,
     pub(crate) stage: StageSnapshot,
-    /// Lengths of the curve and of the history.
+    /// Lengths of the curve, and of the commands and their events.
     pub(crate) lengths: [usize; 2],
+    /// The last command and its event.
+    pub(crate) last: Option<(Command, Event)>,
     pub(crate) cost: Cost,
 }
 
@@ -39,14 +43,14 @@ impl Snapshot {
     }
 }
 
-/// The snapshots before the last commands, one for each.
+/// The snapshots before what was done last, one for each act.
 #[derive(Debug, Default)]
 pub(crate) struct Undo {
     snapshots: Vec<Snapshot>,
 }
 
 impl Undo {
-    /// How many commands can be undone.
+    /// How many acts can be undone.
     pub(crate) fn len(&self) -> usize {
         self.snapshots.len()
     }
@@ -66,7 +70,7 @@ impl Undo {
         self.snapshots.drain(..self.snapshots.len() - kept);
     }
 
-    /// The snapshot before the last command.
+    /// The snapshot before the last act.
     pub(crate) fn pop(&mut self) -> Option<Snapshot> {
         self.snapshots.pop()
     }

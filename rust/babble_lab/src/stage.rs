@@ -11,6 +11,7 @@ use crate::command::Case;
 use crate::cost::Cost;
 use crate::fault::Fault;
 use crate::hash::Hash;
+use crate::palm;
 use crate::state::EpisodeState;
 
 /// The stage.
@@ -19,15 +20,17 @@ pub(crate) struct Stage {
     task: Arc<dyn AnyTask>,
     /// Draws the cases of the seed, one after the other.
     drawer: Box<dyn AnyBatch>,
-    pub(crate) players: Vec<Player>,
+    /// The first case of the seed, to be seen until an episode begins; none if it cannot be drawn.
+    first: Option<Box<dyn AnyBatch>>,
+    players: Vec<Player>,
     case: Option<Case>,
     seed: u64,
 }
 
 /// An agent's episode.
 #[derive(Debug)]
-pub(crate) struct Player {
-    pub(crate) batch: Box<dyn AnyBatch>,
+struct Player {
+    batch: Box<dyn AnyBatch>,
     progress: Progress,
 }
 
@@ -62,10 +65,25 @@ impl Stage {
         Ok(Self {
             task: Arc::clone(task),
             drawer: seeded(task, seed)?,
+            first: first(task, seed).ok(),
             players: (0..agents).map(player).collect::<Result<_, _>>()?,
             case: None,
             seed,
         })
+    }
+
+    /// What there is to see of an agent: its episode, or the first case of the seed before any began.
+    pub(crate) fn seen(&self, agent: usize) -> &dyn AnyBatch {
+        match &self.first {
+            Some(first) if self.case.is_none() => &**first,
+            _ => &*self.players[agent].batch,
+        }
+    }
+
+    /// What the environment of an agent shows.
+    pub(crate) fn record(&self, agent: usize) -> Result<&Record, Fault> {
+        let nothing = || Fault::new("ConfigError", None, "an environment shows nothing");
+        self.seen(agent).record(0).ok_or_else(nothing)
     }
 
     /// The task that is played.
@@ -111,6 +129,12 @@ impl Stage {
         self.case.as_ref()
     }
 
+    /// As [`EpisodeState::palm`].
+    pub(crate) fn palm(&self) -> Option<f64> {
+        let values = self.players.first()?.batch.case(0).ok()?;
+        palm::place(&self.task, &values)
+    }
+
     /// At most `n` control steps of the running episodes; how those that ended in them ended.
     pub(crate) fn step(
         &mut self,
@@ -127,6 +151,7 @@ impl Stage {
         for (i, (player, agent)) in self.players.iter_mut().zip(agents).enumerate() {
             let before = player.progress.steps;
             while player.progress.running && player.progress.steps < before + n {
+                executor.check()?;
                 player.step(agent, self.seed, &self.task, executor)?;
             }
             let steps = player.progress.steps;
@@ -148,6 +173,7 @@ impl Stage {
         let each = || self.players.iter();
         Some(EpisodeState {
             case: self.case.clone()?,
+            palm: self.palm(),
             step,
             seconds: step as f64 * period,
             running: each().map(|player| player.progress.running).collect(),
@@ -195,12 +221,6 @@ impl Stage {
 }
 
 impl Player {
-    /// What its environment shows.
-    pub(crate) fn record(&self) -> Result<&Record, Fault> {
-        let nothing = || Fault::new("ConfigError", None, "an environment shows nothing");
-        self.batch.record(0).ok_or_else(nothing)
-    }
-
     fn outcome(&self) -> Outcome {
         let record = self.batch.record(0);
         record.map_or(Outcome::Running, |record| record.info.outcome)
@@ -238,6 +258,13 @@ impl StageSnapshot {
 /// One environment that never begins anew by itself.
 pub(crate) fn one(task: &Arc<dyn AnyTask>) -> Result<Box<dyn AnyBatch>, Fault> {
     Ok(Arc::clone(task).batch(1, Autoreset::Disabled, Executor::new(1)?)?)
+}
+
+/// The first case of a seed.
+fn first(task: &Arc<dyn AnyTask>, seed: u64) -> Result<Box<dyn AnyBatch>, Fault> {
+    let mut batch = seeded(task, seed)?;
+    batch.reset(&[true])?;
+    Ok(batch)
 }
 
 /// The same with the cases that `reset(seed=seed)` begins in Python.

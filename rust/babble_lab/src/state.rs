@@ -23,7 +23,7 @@ pub struct State {
     pub curve: Vec<CurvePoint>,
     /// Length of the record.
     pub commands: usize,
-    /// How many of the last commands can be undone.
+    /// How many times undo can take something back.
     pub undoable: usize,
     /// A number that two sessions share only if all that commands changed is the same to the bit; 16
     /// hexadecimal digits.
@@ -58,6 +58,9 @@ pub struct EpisodeState {
     pub step: u64,
     /// The same in simulated time \[s\].
     pub seconds: f64,
+    /// How far from the wrist the ball meets the palm when the elbow alone bends \[m\]; none in reaching, or
+    /// if it does not meet it.
+    pub palm: Option<f64>,
     /// Whether each agent's episode goes on.
     pub running: Vec<bool>,
     /// How each agent's episode stands.

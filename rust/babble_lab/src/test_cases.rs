@@ -42,6 +42,7 @@ pub(crate) fn play(
         let mut plans = Vec::new();
         let mut steps = 0;
         let outcome = loop {
+            executor.check()?;
             let Some(record) = batch.record(0) else {
                 return Err(Fault::new("ConfigError", None, "nothing to see"));
             };

@@ -54,7 +54,7 @@ fn the_contract_has_the_types_of_this_crate() {
     let mut text = "// Written by rust/babble_lab/tests/contract.rs; BLESS=1 writes it again.\n\
         import type {\n  Command,\n  Fault,\n  Lesson,\n  Progress,\n  Registry,\n  Scene,\n  Setup,\n  \
         Sight,\n  State,\n} from \"../src/engine/contract\";\n\
-        import type { BareBrain } from \"../src/engine/answer\";\n\n"
+        import type { BareBrain, BareFilm } from \"../src/engine/answer\";\n\n"
         .to_owned();
     text += &constant("registry", "Registry", &registry().unwrap());
     text += &constant("lesson", "Lesson", &lessons()[5]);
@@ -73,6 +73,9 @@ fn the_contract_has_the_types_of_this_crate() {
             "BareBrain",
             &lab.brain(0).unwrap().unwrap(),
         );
+        let mut film = lab.film(0, 0).unwrap();
+        film.frames.truncate(1);
+        text += &constant(&format!("{name}Film"), "BareFilm", &film);
         text += &constant(
             &format!("{name}Progress"),
             "Progress",

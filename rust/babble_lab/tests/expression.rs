@@ -224,6 +224,28 @@ fn a_change_that_is_not_finite_is_an_error_and_changes_nothing() {
     }
 }
 
+/// Terms of a sum whose factor of the output neuron is zero are zero, whatever else is in them; the others are
+/// added. Catches a term that is left out with them, and its sign.
+#[test]
+fn a_term_with_a_factor_that_is_zero_is_zero_and_the_others_stay() {
+    let factored = "(a - a_mean) * exp(1000 * (1 + g)) / (1 + w)";
+    for (text, expected) in [
+        (factored.to_owned(), 0.2),
+        (format!("{factored} - 0.5 * w"), 0.1),
+        (format!("g - {factored}"), 0.45),
+        (format!("-(0.5 * w + {factored} - g) - {factored}"), 0.35),
+        (format!("-({factored}) - abs(w)"), 0.0),
+    ] {
+        let mut association = Association::new(2, 1).unwrap();
+        association.set_weights(&[0.2, -0.2]).unwrap();
+        let rule = parsed(&text);
+        rule.learn(OwnRule::default(), &mut association, &[0.25, 0.0], &[0.0])
+            .unwrap();
+        let w = association.weights()[0];
+        assert!((w - expected).abs() < 1e-6, "{text}: {w}");
+    }
+}
+
 /// Activities of a wrong length or outside of [0, 1] are refused, and nothing is learnt.
 #[test]
 fn activities_that_are_none_are_refused() {

@@ -75,6 +75,16 @@ impl Student {
         self.does(&command(json!({"do": "recall", "case": case})));
     }
 
+    /// Plays the case with the ball so far from the wrist \[m\]: how it ended.
+    fn plays_along_the_palm(&mut self, wrist_m: f64) -> String {
+        let case = self.lab.palm_case(wrist_m).unwrap();
+        self.does(&Command::Recall { case: Some(case) });
+        let placed = self.lab.state().unwrap().episode.unwrap().palm.unwrap();
+        assert!((placed - wrist_m).abs() < 1e-9, "{placed} is not {wrist_m}");
+        self.does(&step(TO_THE_END));
+        self.lab.state().unwrap().episode.unwrap().outcome.remove(0)
+    }
+
     fn silences(&mut self, neurons: Vec<usize>) {
         self.does(&Command::Lesion {
             agent: 0,
@@ -370,6 +380,15 @@ fn reflex() {
     let share = 100.0 * student.tests(40);
     student.plays_until("timeout");
     student.has_done(3);
+    student.sets("along");
+    student.does(&recall());
+    // A ball that is held in the wrong place first is not what is asked for.
+    assert_eq!(student.plays_along_the_palm(0.04), "success");
+    student.has_done(3);
+    assert_ne!(student.plays_along_the_palm(0.02), "success");
+    student.has_done(3);
+    assert_eq!(student.plays_along_the_palm(0.034), "success");
+    student.has_done(4);
     student.answers(&[
         ("small", json!(share)),
         ("edge", json!("The closed fingers miss it, and it is lost")),

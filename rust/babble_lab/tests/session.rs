@@ -63,6 +63,38 @@ fn undo_takes_back_the_bits_and_the_record() {
     assert!(lab.history().is_empty());
 }
 
+/// Catches slices that are undone one by one, and a run that takes the one before with it, though the record
+/// has one command for both.
+#[test]
+fn undo_takes_back_a_run_and_no_more() {
+    let mut lab = lab(setup(REACH, &["paper"]));
+    let mut states = vec![lab.state().unwrap()];
+    for run in [
+        &[babble(3), babble(2), babble(4)][..],
+        &[babble(1)],
+        &[babble(5), test(4), babble(2)],
+    ] {
+        lab.apply(&run[0]).unwrap();
+        for command in &run[1..] {
+            lab.go_on(command).unwrap();
+        }
+        states.push(lab.state().unwrap());
+    }
+    assert_eq!((states[2].commands, states[2].undoable), (1, 2));
+    let record = lab.record(None, "").unwrap();
+    assert_eq!(record.commands, [babble(15), test(4), babble(2)]);
+    assert!(lab.go_on(&step(1)).is_err());
+    assert_eq!(lab.state().unwrap(), states[3]);
+    for before in states.iter().rev().skip(1) {
+        lab.undo().unwrap();
+        assert_eq!(lab.state().unwrap(), *before);
+        let record = lab.record(None, "").unwrap();
+        let again = replay(&record, Policies::default(), common::executor()).unwrap();
+        assert_eq!(again.hash().unwrap(), record.hash);
+    }
+    assert!(lab.undo().is_err());
+}
+
 #[test]
 fn a_record_run_again_gives_its_hash() {
     for (env, variants) in [

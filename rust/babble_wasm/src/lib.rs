@@ -97,12 +97,19 @@ impl Session {
         self.0.apply(&command).map_err(thrown)
     }
 
+    /// Does what a command says, given as JSON, as a part of what was done before.
+    #[wasm_bindgen(js_name = goOn)]
+    pub fn go_on(&mut self, command: &str) -> Reply<()> {
+        let command = Command::from_json(command).map_err(thrown)?;
+        self.0.go_on(&command).map_err(thrown)
+    }
+
     /// Knows these policies from now on.
     pub fn know(&mut self, policies: &Policies) {
         self.0.know(policies.0.clone());
     }
 
-    /// Takes the last command back.
+    /// Takes back what was done last.
     pub fn undo(&mut self) -> Reply<()> {
         self.0.undo().map_err(thrown)
     }
@@ -115,6 +122,18 @@ impl Session {
     /// The world of an agent's episode, as JSON.
     pub fn scene(&self, agent: usize) -> Reply<String> {
         json(&self.0.scene(agent).map_err(thrown)?)
+    }
+
+    /// A babble to look at.
+    pub fn film(&self, agent: usize, ahead: u32) -> Reply<Film> {
+        let film = self.0.film(agent, u64::from(ahead));
+        Ok(Film(film.map_err(thrown)?))
+    }
+
+    /// The case on the stage with the ball elsewhere along the palm, so far from the wrist \[m\], as JSON.
+    #[wasm_bindgen(js_name = palmCase)]
+    pub fn palm_case(&self, wrist_m: f64) -> Reply<String> {
+        json(&self.0.palm_case(wrist_m).map_err(thrown)?)
     }
 
     /// What the eye has to do with Eq. 1, as JSON.
@@ -198,6 +217,28 @@ impl Session {
     #[expect(clippy::needless_pass_by_value, reason = "as wasm-bindgen passes it")]
     pub fn record(&self, lesson: Option<String>, name: &str) -> Reply<String> {
         json(&self.0.record(lesson.as_deref(), name).map_err(thrown)?)
+    }
+}
+
+/// A babble to look at.
+#[wasm_bindgen]
+#[derive(Debug)]
+pub struct Film(babble_lab::Film);
+
+#[wasm_bindgen]
+impl Film {
+    /// All but the activities, as JSON.
+    ///
+    /// # Errors
+    /// A fault.
+    pub fn told(&self) -> Reply<String> {
+        json(&self.0)
+    }
+
+    /// The activities of all maps.
+    #[must_use]
+    pub fn activities(&self) -> Vec<f32> {
+        self.0.activities.clone()
     }
 }
 

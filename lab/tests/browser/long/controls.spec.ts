@@ -9,7 +9,7 @@ test("two agents are beside each other on the same case", async ({ page }) => {
   await page.getByLabel("Second agent, beside it").selectOption("scripted");
   await expect(page).toHaveURL(/agent2=scripted/);
   await run(page, "Babble 100 ×");
-  await page.getByLabel("speed").selectOption("Infinity");
+  await page.getByLabel("playing speed").selectOption("Infinity");
   await run(page, "Play");
   await expect(page.locator(".status")).toContainText(/first agent .*, second agent /);
   await page.getByRole("radio", { name: "Second agent (Scripted)" }).check();

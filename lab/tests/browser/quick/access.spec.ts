@@ -29,9 +29,9 @@ test("the keyboard looks at neurons and silences them", async ({ page }) => {
   const map = page.getByRole("application", { name: /^Input “obstacle”/ });
   await map.focus();
   await page.keyboard.press("ArrowRight");
-  await expect(map).toHaveAccessibleName(/neuron 11, 11: /);
+  await expect(map).toHaveAccessibleName(/at obstacle to the right 0°, obstacle up 0°/);
   await page.keyboard.press("ArrowRight");
-  await expect(map).toHaveAccessibleName(/neuron 11, 12: /);
+  await expect(map).toHaveAccessibleName(/at obstacle to the right 6°, obstacle up 0°/);
   await expect(page.getByText("Weights from that neuron")).toBeVisible();
   await page.getByLabel(/brush: silence/).check();
   await map.focus();

@@ -8,7 +8,7 @@ use crate::error::AgentError;
 
 /// Mean distances of the fovea's edges from its middle that the first and the last unit of size prefer,
 /// in blocks of the image.
-const SIZE_BLOCKS: [f64; 2] = [1.5, 7.5];
+pub(super) const SIZE_BLOCKS: [f64; 2] = [1.5, 7.5];
 /// Neurons of the arm's maps beyond each joint limit.
 const MARGIN: f64 = 2.0;
 
@@ -89,13 +89,19 @@ impl Input {
     }
 }
 
+/// What the first and the last neuron of the arm's maps prefer, as shares of the joint ranges.
+pub(super) fn arm_range(brain: &ChainBrain) -> [f64; 2] {
+    let margin = MARGIN / ((brain.neurons - 1) as f64 - 2.0 * MARGIN);
+    [-margin, 1.0 + margin]
+}
+
 /// The map of the arm's postures, as shares of the joint ranges.
 ///
 /// # Errors
 /// [`AgentError::Brain`] names the number out of bounds.
 pub fn arm(brain: &ChainBrain) -> Result<PopulationMap, AgentError> {
-    let margin = MARGIN / ((brain.neurons - 1) as f64 - 2.0 * MARGIN);
-    let mut config = MapConfig::square(brain.neurons, -margin, 1.0 + margin, brain.sigma);
+    let [low, high] = arm_range(brain);
+    let mut config = MapConfig::square(brain.neurons, low, high, brain.sigma);
     config.sigma = brain.sigma;
     Ok(PopulationMap::new(&config)?)
 }

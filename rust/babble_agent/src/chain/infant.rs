@@ -1,5 +1,6 @@
 //! What moves and remembers in a babble, and the babble itself.
 
+use babble_env::picture::Film;
 use babble_env::tasks::grasp::{FOVEA_NEURONS, InHand};
 use babble_env::{EnvError, GraspTask, Outcome, Stream};
 
@@ -162,7 +163,20 @@ pub fn babble(
     sequence: &Sequence,
     stream: &mut Stream,
 ) -> Result<Experience, EnvError> {
+    Ok(made(task, sequence, stream, false)?.0)
+}
+
+/// The same, with its film if it is to be filmed.
+pub(crate) fn made(
+    task: &GraspTask,
+    sequence: &Sequence,
+    stream: &mut Stream,
+    filmed: bool,
+) -> Result<(Experience, Film), EnvError> {
     let (mut infant, diameter) = Infant::draw(task, stream)?;
+    if filmed {
+        infant.world.start_film(task);
+    }
     let mut kept = true;
     for chunk in chain(sequence) {
         kept = chunk.run(&mut infant, stream)?;
@@ -170,7 +184,11 @@ pub fn babble(
             break;
         }
     }
-    Ok(experience(&infant, diameter, kept))
+    infant.world.mark();
+    Ok((
+        experience(&infant, diameter, kept),
+        infant.world.into_film(),
+    ))
 }
 
 fn experience(infant: &Infant<'_>, diameter: f64, kept: bool) -> Experience {

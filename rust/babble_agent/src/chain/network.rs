@@ -8,7 +8,7 @@ use babble_env::{Executor, GraspTask, Purpose, Stream, Task};
 
 use super::acting::ChainPolicy;
 use super::brain::ChainBrain;
-use super::code::{Input, arm, hand, size};
+use super::code::{Input, SIZE_BLOCKS, arm, arm_range, hand, size};
 use super::plan::Targets;
 use super::practice;
 use super::route::{RouteChoice, Routes, State};
@@ -16,7 +16,7 @@ use super::targets::ChooseTargets;
 use crate::error::AgentError;
 use crate::grasp::{Experience, GraspBabbling};
 use crate::learner::ROUND;
-use crate::network::{Activities, Network, Percept, Recall};
+use crate::network::{Activities, Axis, Network, Percept, Recall};
 use crate::policy::{Policy, observation};
 use crate::rule::Rule;
 
@@ -135,6 +135,18 @@ impl Network for ChainNetwork {
         };
         let routes = vec![self.routes.inputs()];
         vec![seen.clone(), seen.clone(), seen, routes.clone(), routes]
+    }
+
+    fn axes(&self) -> Vec<[Vec<Axis>; 2]> {
+        let eye = Axis::shares(["tilt", "pan"]).to_vec();
+        let size = Axis::new("size in the fovea", "blocks", SIZE_BLOCKS);
+        let sizes = (self.config.sizes > 1).then_some(size);
+        let input: Vec<Axis> = sizes.into_iter().chain(eye).collect();
+        let range = arm_range(&self.config);
+        let arm = ["elbow", "shoulder"].map(|name| Axis::new(name, "share of range", range));
+        [arm, arm, Axis::hand()]
+            .map(|output| [input.clone(), output.to_vec()])
+            .into()
     }
 
     fn perceive_maps(&self, senses: &[f32]) -> Result<Vec<Percept>, AgentError> {

@@ -1,5 +1,6 @@
 //! Babbling with the object in the hand: the enclosure reflex closes the hand, the arm moves.
 
+use babble_env::picture::Film;
 use babble_env::tasks::grasp::{FOVEA_NEURONS, InHand};
 use babble_env::{EnvError, GraspTask, Outcome, Purpose, Stream};
 
@@ -77,14 +78,18 @@ impl Babble for GraspTask {
         stream: &mut Stream,
         all: bool,
     ) -> Result<Vec<Experience>, EnvError> {
-        let mut experiences = match options {
-            GraspBabbling::InHand => carried(self, period_s, stream, |_, radius, stream| {
-                self.draw_free_posture(radius, stream)
-            })?,
-            GraspBabbling::Chain(sequence) => vec![chain::babble(self, &sequence, stream)?],
-        };
+        let (mut experiences, _) = made(self, options, period_s, stream, false)?;
         experiences.retain(|one| all || one.is_kept());
         Ok(experiences)
+    }
+
+    fn film(
+        &self,
+        options: GraspBabbling,
+        period_s: Option<f64>,
+        stream: &mut Stream,
+    ) -> Result<(Vec<Experience>, Film), EnvError> {
+        made(self, options, period_s, stream, true)
     }
 
     fn babble_steps(&self, options: GraspBabbling) -> usize {
@@ -129,6 +134,26 @@ impl Babble for GraspTask {
     }
 }
 
+/// A babble, with its film if it is to be filmed.
+fn made(
+    task: &GraspTask,
+    options: GraspBabbling,
+    period_s: Option<f64>,
+    stream: &mut Stream,
+    filmed: bool,
+) -> Result<(Vec<Experience>, Film), EnvError> {
+    match options {
+        GraspBabbling::InHand => {
+            let choose = |_, radius, stream: &mut Stream| task.draw_free_posture(radius, stream);
+            carried(task, period_s, stream, filmed, choose)
+        }
+        GraspBabbling::Chain(sequence) => {
+            let (one, film) = chain::infant::made(task, &sequence, stream, filmed)?;
+            Ok((vec![one], film))
+        }
+    }
+}
+
 /// Babbles to postures of the arm that somebody chooses, shares of its joint ranges, with an experience
 /// at the end of each movement. All else is as in babble `index` of the seed.
 ///
@@ -141,21 +166,24 @@ pub fn babble_to(
     postures: &[[f64; 2]; POSTURES],
 ) -> Result<Vec<Experience>, EnvError> {
     let mut stream = Stream::new(Purpose::Learning, seed, index);
-    carried(task, Some(MOVING_S), &mut stream, |i, _, _| {
-        Ok(task.arm.denormalised(postures[i]))
-    })
+    let choose = |i: usize, _, _: &mut Stream| Ok(task.arm.denormalised(postures[i]));
+    Ok(carried(task, Some(MOVING_S), &mut stream, false, choose)?.0)
 }
 
 /// One babble to postures that `choose` gives for their number and the object's radius, with an
-/// experience at its end or every `period_s` seconds.
+/// experience at its end or every `period_s` seconds, and its film if it is to be filmed.
 fn carried(
     task: &GraspTask,
     period_s: Option<f64>,
     stream: &mut Stream,
+    filmed: bool,
     choose: impl Fn(usize, f64, &mut Stream) -> Result<[f64; 2], EnvError>,
-) -> Result<Vec<Experience>, EnvError> {
+) -> Result<(Vec<Experience>, Film), EnvError> {
     let diameter = task.draw_diameter(stream);
     let mut object = InHand::draw(task, diameter, stream)?;
+    if filmed {
+        object.start_film(task);
+    }
     object.carry(task, object.start(), CLOSING_S);
     let step_s = task.config.grasp.physics_step_s();
     let steps = |seconds: f64| (seconds / step_s).round().max(1.0);
@@ -167,18 +195,20 @@ fn carried(
         while left >= period {
             object.carry(task, to, period * step_s);
             experiences.push(experience(task, &object, diameter));
+            object.mark();
             left -= period;
         }
         object.carry(task, to, left * step_s);
     }
     if period_s.is_none() {
         experiences.push(experience(task, &object, diameter));
+        object.mark();
     }
     if object.is_held(task) {
         let kept = |one: &mut Experience| one.outcome = Outcome::Success;
         experiences.iter_mut().for_each(kept);
     }
-    Ok(experiences)
+    Ok((experiences, object.into_film()))
 }
 
 /// What is seen and felt now. Whether the object is kept shows at the end of the babble.

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::babbling::Experience;
 use super::policy::{ChooseGrasp, GraspPolicy, Sight};
 use crate::error::AgentError;
-use crate::network::{Activities, Network, Percept, Recall};
+use crate::network::{Activities, Axis, Network, Percept, Recall};
 use crate::policy::{Grasp, Policy, observation};
 use crate::rule::Rule;
 
@@ -150,6 +150,15 @@ impl Network for GraspNetwork {
     fn input_shapes(&self) -> Vec<Vec<usize>> {
         let fovea = FOVEA_NEURONS.isqrt();
         vec![vec![self.config.neurons; 2], vec![fovea; 2]]
+    }
+
+    fn axes(&self) -> Vec<[Vec<Axis>; 2]> {
+        let last = FOVEA_NEURONS.isqrt() as f64;
+        let fovea = ["row from the top", "column from the left"]
+            .map(|name| Axis::new(name, "", [1.0, last]));
+        let eye = Axis::shares(["tilt", "pan"]).to_vec();
+        let arm = Axis::shares(["elbow", "shoulder"]).to_vec();
+        vec![[eye, arm], [fovea.to_vec(), Axis::hand().to_vec()]]
     }
 
     fn perceive_maps(&self, senses: &[f32]) -> Result<Vec<Percept>, AgentError> {

@@ -10,7 +10,7 @@ use crate::error::AgentError;
 use crate::policy::{Decisions, Grasp, Plan, Policy, Random};
 
 /// Where shoulder, elbow, thumb and finger stand in a flat observation.
-const POSTURE: [usize; 4] = [at::ARM, at::ARM + 1, at::HAND, at::HAND + 1];
+pub(super) const POSTURE: [usize; 4] = [at::ARM, at::ARM + 1, at::HAND, at::HAND + 1];
 
 /// What an agent sees at the beginning of an episode.
 #[derive(Debug, Clone, Copy)]
@@ -202,21 +202,6 @@ impl Policy for RandomActions<'_> {
 
     fn action_len(&self) -> usize {
         4
-    }
-
-    fn plan(&self, senses: &[f32], _executor: &mut Executor) -> Result<Vec<Plan>, AgentError> {
-        Ok(vec![Plan::Steps; senses.len() / self.senses_len()])
-    }
-
-    fn decide(
-        &self,
-        _senses: &[f32],
-        _executor: &mut Executor,
-    ) -> Result<Vec<Vec<f64>>, AgentError> {
-        Err(AgentError::Config {
-            field: "agent",
-            problem: "the random agent of grasping decides each step by itself".to_owned(),
-        })
     }
 
     fn act(&self, _plan: &mut Plan, _senses: &[f32], action: &mut [f32]) -> Result<(), AgentError> {

@@ -1,5 +1,6 @@
 //! Babbled movements: a random case, and a random movement in it (Sect. III-A).
 
+use babble_env::picture::Film;
 use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
 use babble_env::{EnvError, Outcome, ReachCase, ReachTask, Stream};
 use serde::{Deserialize, Serialize};
@@ -45,6 +46,60 @@ impl ReachBabbling {
     }
 }
 
+/// A random case, and a random movement in it.
+struct Movement {
+    case: ReachCase,
+    b: [f64; 2],
+    path: MovementPath,
+}
+
+impl Movement {
+    fn draw(task: &ReachTask, stream: &mut Stream) -> Result<Self, EnvError> {
+        let case = ReachCase::draw_geometry(task, stream)?;
+        let [low, high] = task.config.reach.b_range;
+        let b1 = stream.uniform(low, high);
+        let b = [b1, 1.0 - b1];
+        let path = MovementPath::new(task, &case, b)?;
+        Ok(Self { case, b, path })
+    }
+
+    /// What it leaves behind; an illegal one leaves something only if `all` are asked for.
+    /// `each` is called with the arm's posture \[rad\] at the end of every control period.
+    fn make(
+        &self,
+        task: &ReachTask,
+        options: ReachBabbling,
+        stream: &mut Stream,
+        all: bool,
+        each: &mut dyn FnMut([f64; 2]),
+    ) -> Result<Option<Experience>, EnvError> {
+        let case = &self.case;
+        let mut senses = task.config.noise.senses(stream);
+        let mut muscles = task.config.noise.muscles(stream);
+        let fidelity = options.fidelity();
+        let played = self
+            .path
+            .play_with(task, case, fidelity, &mut muscles, |arm| each(arm.q));
+        let mut experience = Experience {
+            eye: [0.0; 2],
+            obstacle: [0.0; 2],
+            b: self.b.map(|x| x as f32),
+            outcome: played.outcome,
+        };
+        if !experience.is_legal() && !all {
+            return Ok(None);
+        }
+        let gaze = task.foveate(case)?;
+        let camera = task.eye.camera(gaze);
+        let single = |x: [f64; 2]| x.map(|x| x as f32);
+        experience.eye = single(task.eye.normalised(gaze));
+        experience.obstacle = single(ReachTask::obstacle_angles(&camera, case.obstacle.as_ref()));
+        task.add_eye_errors(&mut senses, &mut experience.eye);
+        task.add_sight_errors(&mut senses, &mut experience.obstacle);
+        Ok(Some(experience))
+    }
+}
+
 impl Babble for ReachTask {
     type Options = ReachBabbling;
     type Experience = Experience;
@@ -63,35 +118,34 @@ impl Babble for ReachTask {
         stream: &mut Stream,
         all: bool,
     ) -> Result<Vec<Experience>, EnvError> {
-        let case = ReachCase::draw_geometry(self, stream)?;
-        let [low, high] = self.config.reach.b_range;
-        let b1 = stream.uniform(low, high);
-        let b = [b1, 1.0 - b1];
-        let path = MovementPath::new(self, &case, b)?;
-        let whole = path.postures().len() == self.config.reach.movement_steps();
+        let movement = Movement::draw(self, stream)?;
+        let whole = movement.path.postures().len() == self.config.reach.movement_steps();
         if !whole && !all {
             return Ok(Vec::new());
         }
-        let mut senses = self.config.noise.senses(stream);
-        let mut muscles = self.config.noise.muscles(stream);
-        let played = path.play_with(self, &case, options.fidelity(), &mut muscles, |_| {});
-        let mut experience = Experience {
-            eye: [0.0; 2],
-            obstacle: [0.0; 2],
-            b: b.map(|x| x as f32),
-            outcome: played.outcome,
+        let made = movement.make(self, options, stream, all, &mut |_| {})?;
+        Ok(made.into_iter().collect())
+    }
+
+    fn film(
+        &self,
+        options: ReachBabbling,
+        _period_s: Option<f64>,
+        stream: &mut Stream,
+    ) -> Result<(Vec<Experience>, Film), EnvError> {
+        let movement = Movement::draw(self, stream)?;
+        let mut postures = vec![movement.case.start];
+        let made = movement.make(self, options, stream, true, &mut |q| postures.push(q))?;
+        let gaze = self.foveate(&movement.case)?;
+        let each = postures.into_iter();
+        let mut film = Film {
+            frames: each
+                .map(|q| self.visible_at(&movement.case, gaze, q))
+                .collect(),
+            marks: Vec::new(),
         };
-        if !experience.is_legal() && !all {
-            return Ok(Vec::new());
-        }
-        let gaze = self.foveate(&case)?;
-        let camera = self.eye.camera(gaze);
-        let single = |x: [f64; 2]| x.map(|x| x as f32);
-        experience.eye = single(self.eye.normalised(gaze));
-        experience.obstacle = single(Self::obstacle_angles(&camera, case.obstacle.as_ref()));
-        self.add_eye_errors(&mut senses, &mut experience.eye);
-        self.add_sight_errors(&mut senses, &mut experience.obstacle);
-        Ok(vec![experience])
+        film.mark();
+        Ok((made.into_iter().collect(), film))
     }
 
     fn babble_steps(&self, _options: ReachBabbling) -> usize {

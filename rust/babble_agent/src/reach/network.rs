@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::babbling::Experience;
 use super::policy::{ChooseMovement, ReachPolicy};
 use crate::error::AgentError;
-use crate::network::{Activities, Network, Percept, Recall};
+use crate::network::{Activities, Axis, Network, Percept, Recall};
 use crate::policy::{Policy, observation};
 use crate::rule::Rule;
 
@@ -186,6 +186,21 @@ impl Network for ReachNetwork {
             Input::Obstacle(_) => vec![obstacle; 2],
             Input::Conjunctive(_) => vec![target, target, obstacle, obstacle],
         }]
+    }
+
+    fn axes(&self) -> Vec<[Vec<Axis>; 2]> {
+        let field = self.config.obstacle_field_deg;
+        let obstacle = ["obstacle up", "obstacle to the right"]
+            .map(|name| Axis::new(name, "deg", [-field, field]));
+        let target = match self.input {
+            Input::Obstacle(_) => None,
+            Input::Conjunctive(_) => {
+                Some(Axis::shares(["tilt on the target", "pan on the target"]))
+            }
+        };
+        let input = target.into_iter().flatten().chain(obstacle).collect();
+        let output = ["b2", "b1"].map(|name| Axis::new(name, "", [0.0, 1.0]));
+        vec![[input, output.to_vec()]]
     }
 
     fn perceive_maps(&self, senses: &[f32]) -> Result<Vec<Percept>, AgentError> {

@@ -42,6 +42,23 @@ impl Solid {
         }
     }
 
+    /// The box along the axes that holds it.
+    pub(crate) fn bounds(&self) -> Bounds {
+        match self {
+            Self::Capsule { a, b, radius } => {
+                let around = Vector3::repeat(*radius);
+                Bounds {
+                    low: a.inf(b) - around,
+                    high: a.sup(b) + around,
+                }
+            }
+            Self::Cuboid { centre, half } => Bounds {
+                low: centre - half,
+                high: centre + half,
+            },
+        }
+    }
+
     /// Signed distance from its surface to a point of its link's frame \[m\]; negative inside.
     pub(crate) fn distance(&self, point: &Vector3<f64>) -> f64 {
         match self {
@@ -56,5 +73,21 @@ impl Solid {
                 beyond.map(|x| x.max(0.0)).norm() + inside
             }
         }
+    }
+}
+
+/// A box along the axes of a link's frame \[m\].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Bounds {
+    /// Its lowest corner.
+    pub(crate) low: Vector3<f64>,
+    /// Its highest corner.
+    pub(crate) high: Vector3<f64>,
+}
+
+impl Bounds {
+    /// Whether a point is further than a distance from the box along one of the axes.
+    pub(crate) fn are_beyond(&self, point: &Vector3<f64>, distance: f64) -> bool {
+        (0..3).any(|k| point[k] < self.low[k] - distance || point[k] > self.high[k] + distance)
     }
 }

@@ -73,6 +73,10 @@ impl AnyEngine {
 
     /// Physics steps in which the contact solver did not converge; none of an engine that does not
     /// tell.
+    #[cfg_attr(
+        not(feature = "rapier"),
+        expect(clippy::unnecessary_wraps, reason = "rapier does not tell")
+    )]
     pub(super) fn unconverged_steps(&self) -> Option<u64> {
         match self {
             Self::Tree(tree) => Some(tree.unconverged_steps()),

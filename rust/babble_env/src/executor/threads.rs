@@ -38,7 +38,7 @@ impl Executor {
     ) -> Result<T, EnvError> {
         let interrupted = self.interrupted;
         // Work in many short parts is interrupted between them.
-        Stop::asking(&self.clock, interrupted).check()?;
+        self.check()?;
         let pool = self.pool.start(self.threads)?;
         let stop = &Stop::default();
         let (sender, receiver) = channel();

@@ -60,12 +60,19 @@ impl ImagePlane {
 /// Whole numbers i with low ≤ i ≤ high and 0 ≤ i < count, as a half-open
 /// range. NaN gives the whole range on its side.
 pub(super) fn index_range(low: f64, high: f64, count: usize) -> (usize, usize) {
-    let low = low.max(0.0).min(count as f64);
+    // Comparisons, as `max` and `min` are calls in WebAssembly.
+    let count = count as f64;
+    let low = if low > 0.0 { low } else { 0.0 };
+    let low = if low < count { low } else { count };
     // Through i32, which all processors convert to in one instruction.
     let whole = |x: f64| x as i32;
     let first = whole(low);
     let first = first + i32::from(f64::from(first) < low);
-    let high = high.min(count as f64 - 1.0);
+    let high = if high < count - 1.0 {
+        high
+    } else {
+        count - 1.0
+    };
     let end = if high < 0.0 { 0 } else { whole(high) + 1 };
     (first as usize, end as usize)
 }

@@ -2,7 +2,7 @@
 
 use babble_agent::rule::OwnRule;
 
-use super::program::{Instruction, Program, Source};
+use super::program::{Instruction, Program, Source, Tile};
 use super::syntax::{Expr, One, Quantity, Two};
 
 /// Greatest exponent that is multiplied out.
@@ -17,8 +17,18 @@ pub(super) struct Compiled {
     pub(super) pre: Vec<Program>,
     /// The change of a weight, from rows of w and the input's signals; the output's signals are its scalars.
     pub(super) change: Program,
-    /// Signals of the output neuron that are factors of the change: where one is zero, the change is.
-    pub(super) factors: Vec<usize>,
+    /// Terms of the change that are zero where one of their factors is, as these factors: signals of the
+    /// output neuron.
+    pub(super) factored: Vec<Vec<usize>>,
+    /// The change where all those terms are zero; none if that is zero, too.
+    pub(super) rest: Option<Program>,
+}
+
+impl Compiled {
+    /// Memory for the change, which is enough for the rest.
+    pub(super) fn memory(&self) -> Vec<Tile> {
+        self.change.memory()
+    }
 }
 
 /// What a part of an expression depends on.
@@ -32,14 +42,21 @@ enum Scope {
 }
 
 pub(super) fn compiled(expr: &Expr, numbers: OwnRule) -> Compiled {
+    let mut factored = Vec::new();
+    let rest = rest(expr, &mut factored);
     let (mut post, mut pre) = (Vec::new(), Vec::new());
-    let change = program(expr, numbers, &mut |part| match scope(part) {
+    let mut signal = |part| match scope(part) {
         Scope::Nothing | Scope::Output => Some(Source::Scalar(index(&mut post, part))),
         Scope::Input => Some(Source::Row(1 + index(&mut pre, part))),
         Scope::Weight => None,
-    });
-    let mut factors = Vec::new();
-    collect_factors(expr, &post, &mut factors);
+    };
+    let whole = change(expr, numbers, &mut signal);
+    let rest = rest.as_ref().map(|rest| change(rest, numbers, &mut signal));
+    let mut places = |factors: Vec<_>| {
+        let places = factors.into_iter().map(|factor| index(&mut post, factor));
+        places.collect()
+    };
+    let factored = factored.into_iter().map(&mut places).collect();
     let signals = |parts: &[&Expr]| {
         let signal = |part: &&Expr| program(part, numbers, &mut |_| None);
         parts.iter().map(signal).collect()
@@ -47,8 +64,9 @@ pub(super) fn compiled(expr: &Expr, numbers: OwnRule) -> Compiled {
     Compiled {
         post: signals(&post),
         pre: signals(&pre),
-        change,
-        factors,
+        change: whole,
+        factored,
+        rest,
     }
 }
 
@@ -76,19 +94,41 @@ fn index<'a>(parts: &mut Vec<&'a Expr>, part: &'a Expr) -> usize {
     })
 }
 
-/// The signals among the factors of an expression.
-fn collect_factors(expr: &Expr, signals: &[&Expr], found: &mut Vec<usize>) {
-    if let Some(signal) = signals.iter().position(|signal| *signal == expr) {
-        found.push(signal);
-        return;
-    }
+/// The sum of the terms without a factor of the output neuron alone; the others' factors are listed in
+/// `factored`. None if there are only such.
+fn rest<'a>(expr: &'a Expr, factored: &mut Vec<Vec<&'a Expr>>) -> Option<Expr> {
+    let sum = |two, x, y| Some(Expr::Two(two, Box::new(x), Box::new(y)));
+    let minus = |x| Some(Expr::One(One::Negate, Box::new(x)));
     match expr {
-        Expr::One(One::Negate, x) | Expr::Two(Two::Divide, x, _) => {
-            collect_factors(x, signals, found);
+        _ if scope(expr) != Scope::Weight => {}
+        Expr::One(One::Negate, x) => return rest(x, factored).and_then(minus),
+        Expr::Two(two @ (Two::Add | Two::Subtract), x, y) => {
+            return match (rest(x, factored), two, rest(y, factored)) {
+                (Some(x), _, Some(y)) => sum(*two, x, y),
+                (None, Two::Subtract, Some(y)) => minus(y),
+                (Some(x), _, None) | (None, _, Some(x)) => Some(x),
+                (None, _, None) => None,
+            };
         }
-        Expr::Two(Two::Multiply, x, y) => {
-            collect_factors(x, signals, found);
-            collect_factors(y, signals, found);
+        _ => {}
+    }
+    let mut factors = Vec::new();
+    collect_factors(expr, &mut factors);
+    if factors.is_empty() {
+        return Some(expr.clone());
+    }
+    factored.push(factors);
+    None
+}
+
+/// The factors of a term that depend on the output neuron alone.
+fn collect_factors<'a>(term: &'a Expr, found: &mut Vec<&'a Expr>) {
+    match (scope(term), term) {
+        (Scope::Output, _) => found.push(term),
+        (_, Expr::One(One::Negate, x) | Expr::Two(Two::Divide, x, _)) => collect_factors(x, found),
+        (_, Expr::Two(Two::Multiply, x, y)) => {
+            collect_factors(x, found);
+            collect_factors(y, found);
         }
         _ => {}
     }
@@ -103,6 +143,18 @@ fn program<'a>(expr: &'a Expr, numbers: OwnRule, given: &mut Given<'_, 'a>) -> P
     Program {
         instructions,
         result,
+        is_negative: false,
+    }
+}
+
+/// The program of a sum's term; a minus before it costs nothing.
+fn change<'a>(expr: &'a Expr, numbers: OwnRule, given: &mut Given<'_, 'a>) -> Program {
+    match expr {
+        Expr::One(One::Negate, x) => Program {
+            is_negative: true,
+            ..program(x, numbers, given)
+        },
+        _ => program(expr, numbers, given),
     }
 }
 

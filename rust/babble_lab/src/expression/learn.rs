@@ -1,5 +1,7 @@
 //! An expression for a block of movements, one tile of weights after the other.
 
+use std::mem::swap;
+
 use babble_agent::AgentError;
 use babble_brain::{Association, BrainError};
 
@@ -77,8 +79,8 @@ struct Block<'a> {
     output: Activities<'a>,
     /// Signals of the output as `[output neuron][movement][signal]`.
     post: Vec<f32>,
-    /// Movements in which each output neuron learns.
-    active: Vec<Vec<usize>>,
+    /// Movements in which each output neuron learns, and the program of the change then.
+    active: Vec<Vec<(usize, &'a Program)>>,
 }
 
 impl<'a> Block<'a> {
@@ -120,12 +122,22 @@ impl<'a> Block<'a> {
                 self.post.extend(signals.iter().map(|signal| signal[lane]));
             }
         }
-        let learns = |j, m| {
-            let post = self.post_of(j, m);
-            self.rule.factors.iter().all(|&factor| post[factor] != 0.0)
+        let active = |j| {
+            let movements = 0..self.movements();
+            let program = |m| Some((m, self.program(j, m)?));
+            movements.filter_map(program).collect()
         };
-        let active = |j| (0..self.movements()).filter(|&m| learns(j, m)).collect();
         self.active = (0..self.output.neurons).map(active).collect();
+    }
+
+    /// The program for the change of weights to output neuron `j` in movement `m`; none if they do not change.
+    fn program(&self, j: usize, m: usize) -> Option<&'a Program> {
+        let post = self.post_of(j, m);
+        let is_zero = |term: &Vec<usize>| term.iter().any(|&factor| post[factor] == 0.0);
+        if self.rule.factored.iter().all(is_zero) {
+            return self.rule.rest.as_ref();
+        }
+        Some(&self.rule.change)
     }
 
     /// Signals of output neuron `j` in movement `m`.
@@ -137,16 +149,17 @@ impl<'a> Block<'a> {
     /// Changes all weights `w` (outputs × inputs).
     fn learn(&self, w: &mut [f32]) -> Result<(), AgentError> {
         let n_in = self.input.neurons;
-        let mut memory = self.rule.change.memory();
+        let mut memory = self.rule.memory();
         for tile in 0..n_in.div_ceil(LANES) {
             let pre = self.input.signals(&self.rule.pre, tile);
             for (j, w_j) in w.chunks_exact_mut(n_in).enumerate() {
                 let weights = &mut w_j[tile * LANES..n_in.min((tile + 1) * LANES)];
-                let mut changing = padded(weights);
-                for &m in &self.active[j] {
-                    self.change(j, m, &pre, &mut changing, &mut memory);
+                let (mut before, mut after) = (&mut padded(weights), &mut [0.0; LANES]);
+                for &active in &self.active[j] {
+                    self.change(j, active, &pre, before, &mut memory, after);
+                    swap(&mut before, &mut after);
                 }
-                let changed = &changing[..weights.len()];
+                let changed = &before[..weights.len()];
                 if !changed.iter().all(|w| w.is_finite()) {
                     return Err(self.not_finite(j, tile, &pre, weights));
                 }
@@ -156,20 +169,28 @@ impl<'a> Block<'a> {
         Ok(())
     }
 
-    /// The rule for a tile of weights to output neuron `j` in movement `m`.
-    fn change(&self, j: usize, m: usize, pre: &[Tile], w: &mut Tile, memory: &mut [Tile]) {
+    /// The program for a tile of weights to output neuron `j` in movement `m`.
+    fn change(
+        &self,
+        j: usize,
+        (m, program): (usize, &Program),
+        pre: &[Tile],
+        w: &Tile,
+        memory: &mut [Tile],
+        changed: &mut Tile,
+    ) {
         let signals = self.rule.pre.len();
         let pre = &pre[m * signals..][..signals];
-        self.rule.change.add_to(w, self.post_of(j, m), pre, memory);
+        program.add_to(w, self.post_of(j, m), pre, memory, changed);
     }
 
     /// The error for the first weight of a tile that becomes no finite number.
     fn not_finite(&self, j: usize, tile: usize, pre: &[Tile], weights: &[f32]) -> AgentError {
-        let mut memory = self.rule.change.memory();
+        let mut memory = self.rule.memory();
         let mut w = padded(weights);
-        let found = self.active[j].iter().find_map(|&m| {
+        let found = self.active[j].iter().find_map(|&(m, program)| {
             let before = w;
-            self.change(j, m, pre, &mut w, &mut memory);
+            self.change(j, (m, program), pre, &before, &mut memory, &mut w);
             let lane = w[..weights.len()].iter().position(|w| !w.is_finite())?;
             let i = tile * LANES + lane;
             let [a, a_mean] = self.output.of(m, j);

@@ -42,6 +42,8 @@ pub(super) struct Program {
     pub(super) instructions: Vec<Instruction>,
     /// Where the value of the whole expression is.
     pub(super) result: Source,
+    /// Whether minus that is added to a row.
+    pub(super) is_negative: bool,
 }
 
 #[derive(Clone, Copy)]
@@ -58,37 +60,57 @@ impl Program {
 
     /// The value of the expression for each place of `first`, row 0, and of the `others`.
     pub(super) fn value(&self, first: &Tile, others: &[Tile], memory: &mut [Tile]) -> Tile {
-        self.run(&[], first, others, memory);
+        run(&self.instructions, &[], first, others, memory);
         match operand(self.result, &[], first, others, memory) {
             Operand::Scalar(x) => [x; LANES],
             Operand::Row(row) => *row,
         }
     }
 
-    /// Adds the value to each place of row 0.
+    /// Writes row 0 plus the value into `to`, for each of its places.
     pub(super) fn add_to(
         &self,
-        first: &mut Tile,
+        first: &Tile,
         scalars: &[f32],
         others: &[Tile],
         memory: &mut [Tile],
+        to: &mut Tile,
     ) {
-        self.run(scalars, first, others, memory);
-        if self.result == Source::Row(0) {
-            return first.iter_mut().for_each(|x| *x += *x);
-        }
-        match operand(self.result, scalars, &[0.0; LANES], others, memory) {
-            Operand::Scalar(x) => first.iter_mut().for_each(|to| *to += x),
-            Operand::Row(row) => first.iter_mut().zip(row).for_each(|(to, x)| *to += x),
+        use Two::{Add, Multiply, Subtract};
+        let sign = if self.is_negative { -1.0 } else { 1.0 };
+        // The last instruction and the sum are one loop.
+        let (last, before) = match self.instructions.split_last() {
+            Some((&Instruction::Two(two @ (Add | Subtract | Multiply), x, y), before)) => {
+                (Some((two, x, y)), before)
+            }
+            _ => (None, &*self.instructions),
+        };
+        run(before, scalars, first, others, memory);
+        let operand = |source| operand(source, scalars, first, others, memory);
+        match last.map(|(two, x, y)| (two, operand(x), operand(y))) {
+            Some((Add, x, y)) => plus(first, x, y, to, |w, x, y| w + sign * (x + y)),
+            Some((Subtract, x, y)) => plus(first, x, y, to, |w, x, y| w + sign * (x - y)),
+            Some((_, x, y)) => plus(first, x, y, to, |w, x, y| w + sign * (x * y)),
+            None => {
+                let w = Operand::Row(first);
+                zip(w, operand(self.result), to, |w, x| w + sign * x);
+            }
         }
     }
+}
 
-    fn run(&self, scalars: &[f32], first: &Tile, others: &[Tile], memory: &mut [Tile]) {
-        for (i, &instruction) in self.instructions.iter().enumerate() {
-            let (before, rest) = memory.split_at_mut(i);
-            let operand = |source| operand(source, scalars, first, others, before);
-            compute(instruction, operand, &mut rest[0]);
-        }
+/// Runs instructions, whose results are the `memory`.
+fn run(
+    instructions: &[Instruction],
+    scalars: &[f32],
+    first: &Tile,
+    others: &[Tile],
+    memory: &mut [Tile],
+) {
+    for (i, &instruction) in instructions.iter().enumerate() {
+        let (before, rest) = memory.split_at_mut(i);
+        let operand = |source| operand(source, scalars, first, others, before);
+        compute(instruction, operand, &mut rest[0]);
     }
 }
 
@@ -176,6 +198,26 @@ fn zip(x: Operand<'_>, y: Operand<'_>, out: &mut Tile, f: impl Fn(f32, f32) -> f
         (Operand::Row(x), Operand::Row(y)) => {
             for i in 0..LANES {
                 out[i] = f(x[i], y[i]);
+            }
+        }
+    }
+}
+
+/// A row of weights after a change that two operands make.
+#[inline]
+fn plus(
+    w: &Tile,
+    x: Operand<'_>,
+    y: Operand<'_>,
+    out: &mut Tile,
+    f: impl Fn(f32, f32, f32) -> f32,
+) {
+    match (x, y) {
+        (Operand::Scalar(x), y) => zip(Operand::Row(w), y, out, |w, y| f(w, x, y)),
+        (x, Operand::Scalar(y)) => zip(Operand::Row(w), x, out, |w, x| f(w, x, y)),
+        (Operand::Row(x), Operand::Row(y)) => {
+            for i in 0..LANES {
+                out[i] = f(w[i], x[i], y[i]);
             }
         }
     }

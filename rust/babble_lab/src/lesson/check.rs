@@ -19,7 +19,8 @@ enum Kind {
     Learnt,
     /// An episode began; no number.
     Began,
-    /// The agent's episode ended; no number.
+    /// The agent's episode ended; the number is how far from the wrist the ball met the palm \[m\], 0 if it
+    /// did not.
     Ended,
     /// All agents have played a case to its end; no number.
     Played,
@@ -151,10 +152,10 @@ impl Step {
         match (&event.what, self.what) {
             (Happened::Babbled, Kind::Learnt) => event.learnt.first().map(|&n| n as f64),
             (Happened::Recalled { .. }, Kind::Began) => Some(0.0),
-            (Happened::Stepped { ended, .. }, Kind::Ended) => {
+            (Happened::Stepped { ended, palm, .. }, Kind::Ended) => {
                 let outcome = ended.first()?.as_ref()?;
                 let wanted = self.outcome.as_ref().is_none_or(|wanted| wanted == outcome);
-                wanted.then_some(0.0)
+                wanted.then_some(palm.unwrap_or_default())
             }
             (Happened::Stepped { ended, .. }, Kind::Played) => {
                 let last = ended.iter().any(Option::is_some);

@@ -10,8 +10,8 @@ use crate::robot::contact_slots::{SLOTS, SOLIDS};
 use crate::robot::mechanics::MechanicalState;
 
 /// A contact and the numbers of its cost.
-pub(super) struct ContactCost {
-    pub(super) contact: Contact,
+pub(super) struct ContactCost<'a> {
+    pub(super) contact: Contact<'a>,
     /// v̂ \[m/s\]
     aim: f64,
     /// 1/γ \[kg\]
@@ -22,83 +22,94 @@ pub(super) struct ContactCost {
     stiction: f64,
 }
 
-impl ContactCost {
-    /// Impulse along the normal at a relative velocity \[N·s\].
-    fn pressed(&self, relative: &Vector3<f64>) -> f64 {
-        self.stiffness * (self.aim - self.contact.normal.dot(relative)).max(0.0)
-    }
+/// How a contact moves: what its impulse and its curvature have in common.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Motion {
+    /// Impulse along the normal \[N·s\].
+    pressed: f64,
+    /// Sliding velocity \[m/s\].
+    along: Vector3<f64>,
+    /// Its smoothed speed \[m/s\].
+    speed: f64,
+}
 
-    /// Sliding velocity, and its smoothed speed \[m/s\].
-    fn sliding(&self, relative: &Vector3<f64>) -> (Vector3<f64>, f64) {
+impl ContactCost<'_> {
+    /// The motion at a relative velocity \[m/s\].
+    pub(super) fn motion(&self, relative: &Vector3<f64>) -> Motion {
         let normal = &self.contact.normal;
-        let along = relative - normal * normal.dot(relative);
-        let speed = (along.norm_squared() + self.stiction * self.stiction).sqrt();
-        (along, speed)
+        let closing = normal.dot(relative);
+        let along = relative - normal * closing;
+        Motion {
+            pressed: self.stiffness * above_zero(self.aim - closing),
+            along,
+            speed: (along.norm_squared() + self.stiction * self.stiction).sqrt(),
+        }
     }
 
-    /// Impulse on the ball's side at a relative velocity \[N·s\].
-    pub(super) fn impulse(&self, relative: &Vector3<f64>) -> Vector3<f64> {
-        let (along, speed) = self.sliding(relative);
-        self.contact.normal * self.pressed(relative) - along * (self.grip / speed)
+    /// Impulse on the ball's side \[N·s\].
+    pub(super) fn impulse(&self, motion: &Motion) -> Vector3<f64> {
+        self.contact.normal * motion.pressed - motion.along * (self.grip / motion.speed)
     }
 
     /// How the impulse falls with the relative velocity \[kg\].
-    pub(super) fn curvature(&self, relative: &Vector3<f64>) -> Matrix3<f64> {
+    pub(super) fn curvature(&self, motion: &Motion) -> Matrix3<f64> {
         let normal = &self.contact.normal;
-        let (along, speed) = self.sliding(relative);
-        let rub = self.grip / speed;
-        let press = if self.pressed(relative) > 0.0 {
+        let rub = self.grip / motion.speed;
+        let press = if motion.pressed > 0.0 {
             self.stiffness
         } else {
             0.0
         };
-        let along = along / speed;
+        let along = motion.along / motion.speed;
         Matrix3::from_diagonal_element(rub) + normal * normal.transpose() * (press - rub)
             - along * along.transpose() * rub
     }
 }
 
 impl Tree {
-    pub(super) fn contact_costs(
+    /// A contact with the numbers of its cost.
+    pub(super) fn contact_cost<'a>(
         &self,
         mechanics: &MechanicalState,
-        contacts: Vec<Contact>,
-    ) -> Vec<ContactCost> {
+        contact: Contact<'a>,
+    ) -> ContactCost<'a> {
         let config::ContactModel {
             stiffness_n_m,
             relaxation_s,
             stiction_m_s,
         } = self.contact;
-        let cost = |contact: Contact| {
-            let time = if contact.depth > 0.0 {
-                relaxation_s + self.dt
-            } else {
-                self.dt
-            };
-            let last = contact.slot.map_or(0.0, |slot| mechanics.impulses[slot]);
-            ContactCost {
-                aim: contact.depth / time,
-                stiffness: self.dt * stiffness_n_m * (relaxation_s + self.dt),
-                grip: contact.friction * last,
-                stiction: stiction_m_s,
-                contact,
-            }
+        let time = if contact.depth > 0.0 {
+            relaxation_s + self.dt
+        } else {
+            self.dt
         };
-        contacts.into_iter().map(cost).collect()
+        let last = contact.slot.map_or(0.0, |slot| mechanics.impulses[slot]);
+        ContactCost {
+            aim: contact.depth / time,
+            stiffness: self.dt * stiffness_n_m * (relaxation_s + self.dt),
+            grip: contact.friction * last,
+            stiction: stiction_m_s,
+            contact,
+        }
     }
+}
+
+/// The greater of a number and zero, without the call that `max` is in WebAssembly.
+pub(super) const fn above_zero(x: f64) -> f64 {
+    if x > 0.0 { x } else { 0.0 }
 }
 
 /// Writes impulses and depths of the contacts into the state.
 pub(super) fn note_contacts(
     mechanics: &mut MechanicalState,
     velocities: &Velocities,
-    costs: &[ContactCost],
+    costs: &[ContactCost<'_>],
 ) {
     mechanics.impulses = [0.0; SLOTS];
     mechanics.hit = false;
     mechanics.depth = 0.0;
     for cost in costs {
-        let pressed = cost.pressed(&cost.contact.relative(velocities));
+        let Motion { pressed, .. } = cost.motion(&cost.contact.relative(velocities));
         match cost.contact.slot {
             Some(slot) => {
                 mechanics.impulses[slot] = pressed;

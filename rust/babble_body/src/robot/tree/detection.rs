@@ -2,8 +2,9 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use super::contact::{CHAIN, Contact};
-use super::factor::{BALL, Velocities};
+use super::contact::{CHAIN, Chain, Contact};
+use super::contact_cost::{ContactCost, above_zero};
+use super::factor::Velocities;
 use super::model::Tree;
 use super::speeds::{Speeds, quarter_turn};
 use crate::geometry::obstacle::Obstacle;
@@ -16,15 +17,19 @@ use crate::robot::mechanics::{MechanicalState, MovingBall};
 /// Surfaces this near are looked at in any case: contacts may push things together that would not
 /// meet without them \[m\].
 const NEAR_M: f64 = 0.002;
+/// More contacts than are usual.
+const USUAL: usize = 8;
+
 /// Where to look for contacts of one step.
-struct Search<'a> {
-    tree: &'a Tree,
+struct Search<'t, 'a> {
+    tree: &'t Tree,
     poses: &'a [LinkPose; MAX_JOINTS],
     speeds: &'a Speeds,
+    mechanics: &'a MechanicalState,
     ball: &'a MovingBall,
     /// The ball's velocity if nothing touches \[m/s\].
     velocity: Vector3<f64>,
-    found: Vec<Contact>,
+    found: Vec<ContactCost<'t>>,
 }
 
 impl Tree {
@@ -35,14 +40,15 @@ impl Tree {
         poses: &[LinkPose; MAX_JOINTS],
         speeds: &Speeds,
         free: &Velocities,
-    ) -> Vec<Contact> {
+    ) -> Vec<ContactCost<'_>> {
         let mut search = Search {
             tree: self,
             poses,
             speeds,
+            mechanics,
             ball: &mechanics.ball,
             velocity: Vector3::new(free[0], free[1], free[2]),
-            found: Vec::new(),
+            found: Vec::with_capacity(USUAL),
         };
         search.solids_and_ball();
         if mechanics.support {
@@ -56,16 +62,21 @@ impl Tree {
     }
 }
 
-impl Search<'_> {
+impl<'t> Search<'t, '_> {
     fn solids_and_ball(&mut self) {
         let radius = self.ball.radius;
         let mut local = Vector3::zeros();
         let mut of_link = usize::MAX;
-        for slot in 0..self.tree.solids.len() {
-            let place = self.tree.solids[slot];
+        let mut within = 0.0;
+        let tree = self.tree;
+        for (slot, place) in tree.solids.iter().enumerate() {
             if place.link != of_link {
                 of_link = place.link;
                 local = self.poses[of_link].local_from_world(&self.ball.centre);
+                within = radius + self.reach(of_link, &local);
+            }
+            if place.bounds.are_beyond(&local, within) {
+                continue;
             }
             let separation = from_solid(&place.solid, &local);
             let apart = separation.distance - radius;
@@ -78,12 +89,25 @@ impl Search<'_> {
             }
             self.push(Contact {
                 slot: Some(slot),
+                normal,
                 depth: -apart,
                 arm: Some(point - self.ball.centre),
-                friction: self.tree.object.friction,
-                ..self.on_link(of_link, point.xy(), normal)
+                chain: &tree.chains[of_link],
+                levers: self.levers(of_link, point.xy()),
+                friction: tree.object.friction,
             });
         }
+    }
+
+    /// More than how far apart \[m\] the ball, whose centre is at `local`, and a solid of a link can be
+    /// that are not far: no point between them moves faster than the link's joint and its lever let it.
+    fn reach(&self, link: usize, local: &Vector3<f64>) -> f64 {
+        const ROUNDING: f64 = 1.0 + 1e-9;
+        let sum = |v: Vector2<f64>| v.x.abs() + v.y.abs();
+        let lever = sum(local.xy()).max(self.tree.levers[link]);
+        let speed = sum(self.speeds.origin(link)) + lever * self.speeds.turn(link).abs();
+        let ball = sum(self.velocity.xy()) + self.velocity.z.abs();
+        (NEAR_M + self.tree.dt * (speed + ball)) * ROUNDING
     }
 
     fn support_and_ball(&mut self) {
@@ -110,17 +134,15 @@ impl Search<'_> {
             normal,
             depth: -apart,
             arm: Some(normal * -(self.ball.radius + 0.5 * apart)),
-            joints: [0; CHAIN],
+            chain: &Chain::NONE,
             levers: [Vector2::zeros(); CHAIN],
-            chain: 0,
             friction,
         });
     }
 
     /// Without friction: such a touch ends a movement.
     fn solids_and_obstacle(&mut self, obstacle: &Obstacle) {
-        for slot in 0..self.tree.solids.len() {
-            let place = self.tree.solids[slot];
+        for place in &self.tree.solids {
             let poses = &self.poses[place.link];
             if !self.is_level(&place.solid, poses.origin.z) {
                 continue;
@@ -135,8 +157,13 @@ impl Search<'_> {
                 continue;
             }
             self.push(Contact {
+                slot: None,
+                normal,
                 depth: -apart,
-                ..self.on_link(place.link, point, normal)
+                arm: None,
+                chain: &self.tree.chains[place.link],
+                levers: self.levers(place.link, point),
+                friction: 0.0,
             });
         }
     }
@@ -152,33 +179,21 @@ impl Search<'_> {
 
     /// Whether surfaces that come closer at a speed \[m/s\] stay apart in this step.
     fn is_far(&self, apart: f64, closing: f64) -> bool {
-        apart > NEAR_M + self.tree.dt * closing.max(0.0)
+        apart > NEAR_M + self.tree.dt * above_zero(closing)
     }
 
-    /// A contact of the obstacle at a point of a link.
-    fn on_link(&self, link: usize, point: Vector2<f64>, normal: Vector3<f64>) -> Contact {
-        let mut contact = Contact {
-            slot: None,
-            normal,
-            depth: 0.0,
-            arm: None,
-            joints: [0; CHAIN],
-            levers: [Vector2::zeros(); CHAIN],
-            chain: 0,
-            friction: 0.0,
-        };
-        let mut next = Some(link);
-        while let Some(i) = next {
-            let lever = quarter_turn(point - self.poses[i].origin.xy());
-            contact.joints[contact.chain] = BALL + i;
-            contact.levers[contact.chain] = lever * self.tree.links[i].sense();
-            contact.chain += 1;
-            next = self.tree.links[i].parent;
+    /// How the joints of a link move a point of it, per rad/s \[m\].
+    fn levers(&self, link: usize, point: Vector2<f64>) -> [Vector2<f64>; CHAIN] {
+        let mut levers = [Vector2::zeros(); CHAIN];
+        for (lever, i) in levers.iter_mut().zip(self.tree.chains[link].links()) {
+            let turned = quarter_turn(point - self.poses[i].origin.xy());
+            *lever = turned * self.tree.links[i].sense();
         }
-        contact
+        levers
     }
 
-    fn push(&mut self, contact: Contact) {
-        self.found.push(contact);
+    fn push(&mut self, contact: Contact<'t>) {
+        self.found
+            .push(self.tree.contact_cost(self.mechanics, contact));
     }
 }

@@ -22,14 +22,14 @@ impl Tree {
         springs: &[Spring; MAX_JOINTS],
     ) -> Equations {
         let dt = self.dt;
-        let mut matrix = [[0.0; SIZE]; SIZE];
+        let mut matrix = [[0.0; _]; SIZE];
         let mut rhs = [0.0; SIZE];
         self.add_ball(&mechanics.ball, &mut matrix, &mut rhs);
         let bias = self.add_mass(poses, &mechanics.v, &mut matrix);
         let joints = self.sparsity.joints();
         let mut velocities = [0.0; SIZE];
         velocities[joints.clone()].copy_from_slice(&mechanics.v[..self.links.len()]);
-        let momenta = self.sparsity.product(&matrix, &velocities, &joints);
+        let momenta = self.sparsity.product(&matrix, &velocities, joints.end);
         rhs[joints.clone()].copy_from_slice(&momenta[joints]);
         for i in 0..self.links.len() {
             let Spring {
@@ -39,7 +39,7 @@ impl Tree {
             } = springs[i];
             let k = BALL + i;
             rhs[k] += dt * (stiffness * (rest - mechanics.q[i]) + torque - bias[i]);
-            matrix[k][k] += dt * (self.damping[i] + dt * stiffness);
+            matrix[k][self.sparsity.column(k)] += dt * (self.damping[i] + dt * stiffness);
         }
         Equations { matrix, rhs }
     }
@@ -66,9 +66,9 @@ impl Tree {
             velocities[k] /= matrix[k][k];
         }
         let mut factors = *matrix;
-        let joints = self.sparsity.joints();
-        self.sparsity.factor(&mut factors, &joints);
-        self.sparsity.solve(&factors, &mut velocities, &joints);
+        let end = self.sparsity.size();
+        self.sparsity.factor::<BALL>(&mut factors, end);
+        self.sparsity.solve::<BALL>(&factors, &mut velocities, end);
         velocities
     }
 }

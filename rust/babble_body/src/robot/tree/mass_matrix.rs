@@ -54,7 +54,8 @@ impl Tree {
                 let there = poses[i].origin.xy();
                 let moment =
                     own.second - own.first.dot(&(here + there)) + own.mass * here.dot(&there);
-                matrix[BALL + j][BALL + i] = sense * self.links[i].sense() * moment;
+                matrix[BALL + j][self.sparsity.column(BALL + i)] =
+                    sense * self.links[i].sense() * moment;
                 ancestor = self.links[i].parent;
             }
             if let Some(parent) = self.links[j].parent {

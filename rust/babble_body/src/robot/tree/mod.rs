@@ -18,6 +18,7 @@ mod factor;
 mod line;
 mod mass_matrix;
 mod model;
+mod moving_contact;
 mod planar_mass;
 mod solver;
 mod speeds;

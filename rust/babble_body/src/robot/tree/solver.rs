@@ -19,8 +19,9 @@ use nalgebra::Vector3;
 use super::contact_cost::ContactCost;
 use super::equations::Equations;
 use super::factor::{BALL, Matrix, SIZE, Velocities};
-use super::line::{Line, LinePoint};
+use super::line::Line;
 use super::model::Tree;
+use super::moving_contact::MovingContact;
 use super::speeds::Speeds;
 use crate::robot::contact_slots::SOLIDS;
 use crate::robot::kinematics::{LinkPose, MAX_JOINTS, place};
@@ -42,27 +43,22 @@ impl Tree {
         poses: &[LinkPose; MAX_JOINTS],
         equations: &Equations,
         free: Velocities,
-        costs: &[ContactCost],
+        costs: &[ContactCost<'_>],
     ) -> Velocities {
         if costs.is_empty() {
             return free;
         }
-        let coupled = costs.iter().any(|cost| cost.contact.chain > 0);
-        let rows = if coupled {
-            self.sparsity.all()
-        } else {
-            0..BALL
-        };
+        let coupled = costs.iter().any(|cost| cost.contact.chain.moves());
+        let end = if coupled { self.sparsity.size() } else { BALL };
         let mut velocities = free;
-        self.begin(mechanics, poses, &rows, &mut velocities);
+        self.begin(mechanics, poses, end, &mut velocities);
         let mut problem = Problem {
             tree: self,
             equations,
-            costs,
-            rows,
+            contacts: costs.iter().map(MovingContact::new).collect(),
+            end,
             velocities,
             slopes: [0.0; SIZE],
-            factors: equations.matrix,
         };
         if !problem.solve(TOLERANCE * self.mass(&mechanics.ball)) {
             self.note_unconverged();
@@ -76,14 +72,13 @@ impl Tree {
         &self,
         mechanics: &MechanicalState,
         poses: &[LinkPose; MAX_JOINTS],
-        rows: &Range<usize>,
+        end: usize,
         velocities: &mut Velocities,
     ) {
         let ball = &mechanics.ball;
         let (mut velocity, mut spin) = (ball.velocity, ball.spin);
-        if rows.end > BALL {
-            velocities[ARM.end..rows.end]
-                .copy_from_slice(&mechanics.v[FOREARM + 1..rows.end - BALL]);
+        if end > BALL {
+            velocities[ARM.end..end].copy_from_slice(&mechanics.v[FOREARM + 1..end - BALL]);
         }
         if mechanics.impulses[..SOLIDS]
             .iter()
@@ -113,13 +108,13 @@ impl Tree {
 struct Problem<'a> {
     tree: &'a Tree,
     equations: &'a Equations,
-    costs: &'a [ContactCost],
-    rows: Range<usize>,
+    /// All contacts as they move there.
+    contacts: Vec<MovingContact<'a>>,
+    /// Velocities from here on are not changed: the joints' where no contact joins them to the ball.
+    end: usize,
     velocities: Velocities,
     /// Slopes of the function there.
     slopes: Velocities,
-    /// Of the function's curvature, there or one step before.
-    factors: Matrix,
 }
 
 impl Problem<'_> {
@@ -127,8 +122,8 @@ impl Problem<'_> {
     fn solve(&mut self, enough: f64) -> bool {
         self.slope();
         for _ in 0..MAX_STEPS {
-            self.factor();
-            let (direction, gain) = self.direction();
+            let factors = self.factors();
+            let (direction, gain) = self.direction(&factors);
             if !is_downhill(gain) {
                 // At the least, rounding alone decides about the sign of what is left.
                 return gain.abs() <= enough;
@@ -140,7 +135,7 @@ impl Problem<'_> {
             }
             // Near the least, curvature hardly changes: a step with the factors at hand is enough.
             self.slope();
-            let (direction, gain) = self.direction();
+            let (direction, gain) = self.direction(&factors);
             if gain <= enough && is_downhill(gain) {
                 self.go(&direction, 1.0);
                 return true;
@@ -152,48 +147,50 @@ impl Problem<'_> {
     fn slope(&mut self) {
         let Equations { matrix, rhs } = self.equations;
         let sparsity = &self.tree.sparsity;
-        self.slopes = sparsity.product(matrix, &self.velocities, &self.rows);
-        for k in self.rows.clone() {
+        self.slopes = sparsity.product(matrix, &self.velocities, self.end);
+        for k in 0..self.end {
             self.slopes[k] -= rhs[k];
         }
-        for cost in self.costs {
-            let relative = cost.contact.relative(&self.velocities);
-            let impulse = cost.impulse(&relative);
-            cost.contact.apply(&-impulse, &mut self.slopes);
+        for moving in &mut self.contacts {
+            moving.move_with(&self.velocities);
+            let contact = &moving.cost.contact;
+            contact.apply(&-moving.impulse, &mut self.slopes);
         }
     }
 
-    fn factor(&mut self) {
-        self.factors = self.equations.matrix;
-        for cost in self.costs {
-            let relative = cost.contact.relative(&self.velocities);
-            let curvature = cost.curvature(&relative);
-            cost.contact.add(&curvature, &mut self.factors);
+    /// Factors of the function's curvature.
+    fn factors(&self) -> Matrix {
+        let mut matrix = self.equations.matrix;
+        for moving in &self.contacts {
+            let contact = &moving.cost.contact;
+            contact.add(&moving.curvature(), &mut matrix);
         }
-        self.tree.sparsity.factor(&mut self.factors, &self.rows);
+        self.tree.sparsity.factor::<0>(&mut matrix, self.end);
+        matrix
     }
 
-    /// Newton's step, and how fast the function falls along it at first \[J\].
-    fn direction(&self) -> (Velocities, f64) {
+    /// Newton's step with the curvature of here, or of one step before, and how fast the function falls
+    /// along it at first \[J\].
+    fn direction(&self, factors: &Matrix) -> (Velocities, f64) {
         let mut direction = self.slopes.map(|slope| -slope);
         let sparsity = &self.tree.sparsity;
-        sparsity.solve(&self.factors, &mut direction, &self.rows);
+        sparsity.solve::<0>(factors, &mut direction, self.end);
         let gain = -self.dot(&self.slopes, &direction);
         (direction, gain)
     }
 
     fn dot(&self, a: &Velocities, b: &Velocities) -> f64 {
-        self.rows.clone().map(|k| a[k] * b[k]).sum()
+        (0..self.end).map(|k| a[k] * b[k]).sum()
     }
 
     fn go(&mut self, direction: &Velocities, share: f64) {
-        for k in self.rows.clone() {
+        for k in 0..self.end {
             self.velocities[k] += share * direction[k];
         }
     }
 
     /// The share of a step after which the function rises no more, roughly.
-    fn search(&self, direction: &Velocities, gain: f64) -> f64 {
+    fn search(&mut self, direction: &Velocities, gain: f64) -> f64 {
         const ROUGHLY: f64 = 0.1;
         const TRIES: usize = 30;
         let line = self.line(direction, gain);
@@ -220,25 +217,19 @@ impl Problem<'_> {
         share
     }
 
-    fn line(&self, direction: &Velocities, gain: f64) -> Line<'_> {
-        let changed = {
-            let sparsity = &self.tree.sparsity;
-            sparsity.product(&self.equations.matrix, direction, &self.rows)
-        };
-        let points: Vec<_> = self
-            .costs
-            .iter()
-            .map(|cost| LinePoint {
-                cost,
-                relative: cost.contact.relative(&self.velocities),
-                change: cost.contact.relative(direction),
-            })
-            .collect();
-        let pushed: f64 = points.iter().map(|point| point.pushed(0.0)).sum();
+    fn line(&mut self, direction: &Velocities, gain: f64) -> Line<'_> {
+        let sparsity = &self.tree.sparsity;
+        let changed = sparsity.product(&self.equations.matrix, direction, self.end);
+        let quadratic = self.dot(&changed, direction);
+        let mut pushed = 0.0;
+        for moving in &mut self.contacts {
+            moving.change = moving.cost.contact.relative(direction);
+            pushed += moving.impulse.dot(&moving.change);
+        }
         Line {
             linear: pushed - gain,
-            quadratic: self.dot(&changed, direction),
-            points,
+            quadratic,
+            contacts: &self.contacts,
         }
     }
 }

@@ -30,6 +30,11 @@ impl Speeds {
         speeds
     }
 
+    /// Velocity of a link's joint \[m/s\].
+    pub(super) const fn origin(&self, link: usize) -> Vector2<f64> {
+        self.origin[link]
+    }
+
     /// Angular speed of a link \[rad/s\].
     pub(super) const fn turn(&self, link: usize) -> f64 {
         self.turn[link]

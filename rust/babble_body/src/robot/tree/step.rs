@@ -24,8 +24,7 @@ impl Engine for Tree {
         let equations = self.equations(mechanics, &poses, &springs);
         let free = self.without_contacts(&equations);
         let speeds = Speeds::of(&self.links, &poses, &free[BALL..]);
-        let contacts = self.contacts(mechanics, &poses, &speeds, &free);
-        let costs = self.contact_costs(mechanics, contacts);
+        let costs = self.contacts(mechanics, &poses, &speeds, &free);
         let mut velocities = self.with_contacts(mechanics, &poses, &equations, free, &costs);
         self.limit(&mut velocities);
         note_contacts(mechanics, &velocities, &costs);

@@ -7,10 +7,12 @@ use babble_body::robot::{Ball, Posture, Setup, Touch, World, towards};
 use babble_eye::Gaze;
 
 use super::case::GraspCase;
-use super::sight::{FOVEA_NEURONS, see};
+use super::picture::visible_in;
+use super::sight::{FOVEA_NEURONS, foveate, scene, see};
 use super::state::GraspState;
 use super::task::GraspTask;
 use crate::error::EnvError;
+use crate::picture::{Film, Visible};
 use crate::stream::Stream;
 
 /// A world with an object at the palm, outside of any episode.
@@ -21,6 +23,8 @@ pub struct InHand {
     /// Whether the hand enclosed the object in each physics step, up to the time that a grasp must be
     /// held for; newest last.
     enclosed: VecDeque<bool>,
+    /// Physics steps that were filmed, and the film, if there is to be one.
+    film: Option<(u32, Film)>,
 }
 
 impl InHand {
@@ -50,6 +54,7 @@ impl InHand {
             world,
             case,
             enclosed: VecDeque::new(),
+            film: None,
         }
     }
 
@@ -60,6 +65,7 @@ impl InHand {
             world: state.world.clone(),
             case: state.case,
             enclosed: VecDeque::new(),
+            film: None,
         }
     }
 
@@ -102,10 +108,50 @@ impl InHand {
             self.enclosed
                 .push_back(task.robot.touch(&self.world).encloses());
             deepest = deepest.max(task.robot.penetration(&self.world));
+            self.expose(task);
         }
         let surplus = self.enclosed.len().saturating_sub(hold_len(task));
         self.enclosed.drain(..surplus);
         deepest
+    }
+
+    /// Films what happens from now on.
+    pub fn start_film(&mut self, task: &GraspTask) {
+        let frames = vec![self.visible(task)];
+        let marks = Vec::new();
+        self.film = Some((0, Film { frames, marks }));
+    }
+
+    /// Marks the last frame of the film, if there is one.
+    pub fn mark(&mut self) {
+        if let Some((_, film)) = &mut self.film {
+            film.mark();
+        }
+    }
+
+    /// The film so far; empty if nothing was filmed.
+    #[must_use]
+    pub fn into_film(self) -> Film {
+        self.film.map(|(_, film)| film).unwrap_or_default()
+    }
+
+    /// Films a physics step.
+    fn expose(&mut self, task: &GraspTask) {
+        let Some((steps, mut film)) = self.film.take() else {
+            return;
+        };
+        if (steps + 1).is_multiple_of(task.config.grasp.physics_steps) {
+            film.frames.push(self.visible(task));
+        }
+        self.film = Some((steps + 1, film));
+    }
+
+    /// What there is to see; the eye looks straight ahead where all of the object is hidden.
+    #[must_use]
+    pub fn visible(&self, task: &GraspTask) -> Visible {
+        let scene = scene(task, &self.world, &self.case);
+        let (gaze, _) = foveate(task, &scene);
+        visible_in(task, &self.world, &self.case, &scene, gaze)
     }
 
     /// Takes the support away.

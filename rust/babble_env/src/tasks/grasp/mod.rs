@@ -9,6 +9,7 @@ mod episode;
 mod face;
 mod in_hand;
 mod options;
+mod palm;
 mod picture;
 pub mod protocol;
 mod sight;

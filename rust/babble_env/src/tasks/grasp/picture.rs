@@ -2,10 +2,11 @@
 
 use babble_body::robot::World;
 use babble_body::visual;
-use babble_eye::red_region;
+use babble_eye::{Gaze, Primitive, red_region};
 use image::RgbImage;
 use nalgebra::{Vector2, Vector3};
 
+use super::case::GraspCase;
 use super::sight;
 use super::state::{GraspState, Moment};
 use super::task::GraspTask;
@@ -59,20 +60,30 @@ pub(super) fn picture(
 
 /// As [`crate::Task::visible`].
 pub(super) fn visible(task: &GraspTask, state: &GraspState) -> Visible {
-    let body = &task.config.body;
     let scene = sight::scene(task, &state.world, &state.case);
-    let red = red_region(&scene, &task.eye.camera(state.gaze));
-    let ball = task.robot.visible_object(&state.world, state.case.radius());
+    visible_in(task, &state.world, &state.case, &scene, state.gaze)
+}
+
+/// What there is to see of a world, with the things that the eye sees of it and its gaze.
+pub(super) fn visible_in(
+    task: &GraspTask,
+    world: &World,
+    case: &GraspCase,
+    scene: &[Primitive],
+    gaze: Gaze,
+) -> Visible {
+    let red = red_region(scene, &task.eye.camera(gaze));
+    let ball = task.robot.visible_object(world, case.radius());
     let mut parts = vec![("object", ball)];
-    parts.extend(task.robot.visible_parts(&state.world));
-    if let Some(obstacle) = &state.case.obstacle {
-        parts.push(("obstacle", visual::obstacle(body, obstacle)));
+    parts.extend(task.robot.visible_parts(world));
+    if let Some(obstacle) = &case.obstacle {
+        parts.push(("obstacle", visual::obstacle(&task.config.body, obstacle)));
     }
-    if let Some(goal) = state.case.goal {
+    if let Some(goal) = case.goal {
         parts.push(("goal", visual::goal(goal)));
     }
-    let palm = task.robot.palm(&state.world).origin;
-    Visible::new(&task.eye, state.gaze, red, palm.into(), parts)
+    let palm = task.robot.palm(world).origin;
+    Visible::new(&task.eye, gaze, red, palm.into(), parts)
 }
 
 fn world_at(task: &GraspTask, moment: &Moment) -> World {
@@ -81,7 +92,7 @@ fn world_at(task: &GraspTask, moment: &Moment) -> World {
 }
 
 /// Where the object is to be carried, on the ground.
-fn push_goal(things: &mut Vec<babble_eye::Primitive>, state: &GraspState) {
+fn push_goal(things: &mut Vec<Primitive>, state: &GraspState) {
     if let Some(goal) = state.case.goal {
         things.push(visual::goal(goal));
     }

@@ -1,10 +1,11 @@
 //! The scene of a picture of reaching.
 
 use babble_body::visual::{self, Part};
-use babble_eye::{Primitive, red_region};
+use babble_eye::{Gaze, Primitive, red_region};
 use image::RgbImage;
 use nalgebra::Vector2;
 
+use super::case::ReachCase;
 use super::state::ReachState;
 use super::task::ReachTask;
 use crate::error::EnvError;
@@ -44,23 +45,25 @@ fn moment(state: &ReachState, frame: Option<usize>) -> Result<([f64; 2], &[[f64;
 
 /// As [`crate::Task::visible`].
 pub(super) fn visible(task: &ReachTask, state: &ReachState) -> Visible {
-    let target = visual::target(&task.config.body, state.case.target);
-    let [x, y] = task.arm.fingertip(state.arm.q).into();
-    let red = red_region(&[target], &task.eye.camera(state.gaze));
-    Visible::new(
-        &task.eye,
-        state.gaze,
-        red,
-        [x, y, 0.0],
-        parts(task, state, state.arm.q),
-    )
+    task.visible_at(&state.case, state.gaze, state.arm.q)
+}
+
+impl ReachTask {
+    /// What there is to see of a case with the eye at a gaze and the arm in a posture \[rad\].
+    #[must_use]
+    pub fn visible_at(&self, case: &ReachCase, gaze: Gaze, q: [f64; 2]) -> Visible {
+        let target = visual::target(&self.config.body, case.target);
+        let [x, y] = self.arm.fingertip(q).into();
+        let red = red_region(&[target], &self.eye.camera(gaze));
+        Visible::new(&self.eye, gaze, red, [x, y, 0.0], parts(self, case, q))
+    }
 }
 
 /// The target first, then all else that is solid.
-fn parts(task: &ReachTask, state: &ReachState, q: [f64; 2]) -> Vec<Part> {
+fn parts(task: &ReachTask, case: &ReachCase, q: [f64; 2]) -> Vec<Part> {
     let body = &task.config.body;
-    let mut parts = vec![("target", visual::target(body, state.case.target))];
-    if let Some(obstacle) = &state.case.obstacle {
+    let mut parts = vec![("target", visual::target(body, case.target))];
+    if let Some(obstacle) = &case.obstacle {
         parts.push(("obstacle", visual::obstacle(body, obstacle)));
     }
     parts.extend(visual::robot(body, q));
@@ -76,7 +79,7 @@ fn things(
     view: View,
 ) -> Vec<Primitive> {
     let body = &task.config.body;
-    let parts = parts(task, state, q).into_iter();
+    let parts = parts(task, &state.case, q).into_iter();
     let mut things: Vec<Primitive> = parts.map(|(_, thing)| thing).collect();
     if view == View::ThirdPerson {
         let tips: Vec<Vector2<f64>> = trail.iter().map(|&q| task.arm.fingertip(q)).collect();

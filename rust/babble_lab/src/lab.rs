@@ -13,6 +13,7 @@ use crate::fault::Fault;
 use crate::hash::Hash;
 use crate::history::{Event, Happened};
 use crate::making;
+use crate::palm;
 use crate::policies::Policies;
 use crate::setup::{AgentSetup, Setup};
 use crate::snapshot::{Snapshot, Undo};
@@ -119,6 +120,15 @@ impl Lab {
     /// Knows these policies from now on, which a change of the setup can name.
     pub fn know(&mut self, policies: Policies) {
         self.policies = policies;
+    }
+
+    /// The case on the stage, or the next one, with the ball so far from the wrist \[m\] when the elbow alone
+    /// bends until the palm touches it.
+    ///
+    /// # Errors
+    /// A [`Fault`] for a distance out of bounds, or another task.
+    pub fn palm_case(&self, wrist_m: f64) -> Result<Case, Fault> {
+        palm::moved(&self.task, &self.stage.seen(0).case(0)?, wrist_m)
     }
 
     /// Takes back what was done last, as if it had never been: a command, and those that

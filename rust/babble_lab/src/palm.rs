@@ -6,7 +6,6 @@ use babble_env::{AnyTask, CaseValues, GraspCase, GraspTask, downcast};
 
 use crate::command::Case;
 use crate::fault::Fault;
-use crate::lab::Lab;
 
 /// Distances from the wrist to which a ball can be moved \[m\]: nearer it meets the forearm too, and farther
 /// the fingers.
@@ -28,32 +27,32 @@ pub(crate) fn place(task: &Arc<dyn AnyTask>, values: &CaseValues) -> Option<f64>
     })
 }
 
-impl Lab {
-    /// The case on the stage, or the next one, with the ball so far from the wrist \[m\] when the elbow alone
-    /// bends until the palm touches it.
-    ///
-    /// # Errors
-    /// A [`Fault`] for a distance out of bounds, or another task.
-    pub fn palm_case(&self, wrist_m: f64) -> Result<Case, Fault> {
-        let [low, high] = PALM_M;
-        if !(low..=high).contains(&wrist_m) {
-            let problem = format!("{wrist_m} m from the wrist is not in [{low}, {high}] m");
-            return Err(Fault::config("wrist", problem));
-        }
-        let no_palm = || Fault::config("env", "balls meet the palm in grasping alone");
-        let task = downcast::<GraspTask>(&self.task).ok_or_else(no_palm)?;
-        let values = self.stage.seen(0).case(0)?;
-        let numbers = || values.numbers::<2>("start").zip(values.number("diameter"));
-        let ([shoulder, elbow], diameter) = numbers().ok_or_else(no_palm)?;
-        let withdrawn = WITHDRAWN_DEG.to_radians();
-        let [least, most] = ELBOW_DEG.map(f64::to_radians);
-        let touching = (elbow + withdrawn).clamp(least, most);
-        let object = task.along_palm([shoulder, touching], diameter / 2.0, wrist_m);
-        let mut case = Case::new();
-        let start = [shoulder, touching - withdrawn];
-        case.insert("start".to_owned(), start.into());
-        case.insert("object".to_owned(), object.into());
-        case.insert("diameter".to_owned(), diameter.into());
-        Ok(case)
+/// The case with the ball so far from the wrist \[m\] when the elbow alone bends until the palm touches it.
+///
+/// # Errors
+/// A [`Fault`] for a distance out of bounds, or another task.
+pub(crate) fn moved(
+    task: &Arc<dyn AnyTask>,
+    values: &CaseValues,
+    wrist_m: f64,
+) -> Result<Case, Fault> {
+    let [low, high] = PALM_M;
+    if !(low..=high).contains(&wrist_m) {
+        let problem = format!("{wrist_m} m from the wrist is not in [{low}, {high}] m");
+        return Err(Fault::config("wrist", problem));
     }
+    let no_palm = || Fault::config("env", "balls meet the palm in grasping alone");
+    let task = downcast::<GraspTask>(task).ok_or_else(no_palm)?;
+    let numbers = || values.numbers::<2>("start").zip(values.number("diameter"));
+    let ([shoulder, elbow], diameter) = numbers().ok_or_else(no_palm)?;
+    let withdrawn = WITHDRAWN_DEG.to_radians();
+    let [least, most] = ELBOW_DEG.map(f64::to_radians);
+    let touching = (elbow + withdrawn).clamp(least, most);
+    let object = task.along_palm([shoulder, touching], diameter / 2.0, wrist_m);
+    let mut case = Case::new();
+    let start = [shoulder, touching - withdrawn];
+    case.insert("start".to_owned(), start.into());
+    case.insert("object".to_owned(), object.into());
+    case.insert("diameter".to_owned(), diameter.into());
+    Ok(case)
 }

@@ -66,6 +66,14 @@ def test_a_lesson_leads_into_the_lab_and_is_handed_in(lesson):
     assert lesson.source.cells[-1].source.endswith(f'course.hand_in("{lesson.name[0]}", name)')
 
 
+def test_links_of_a_notebook_lead_to_pages_in_the_repository(lesson):
+    notebook = lesson.version("student")
+    links = re.findall(r"\]\((?!https?://)([^)]*)\)", text(notebook, "markdown"))
+    assert all(link.startswith("../lab/") for link in links)
+    pages = re.findall(r"/blob/main/docs/([^)#?]*)", text(notebook, "markdown"))
+    assert all((ROOT / "docs" / page).is_file() for page in pages)
+
+
 def answers_in(notebook):
     return [cell for cell in notebook.cells if "instructor" in cell.metadata.get("tags", [])]
 

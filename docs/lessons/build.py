@@ -17,6 +17,7 @@ import tempfile
 import time
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from importlib.metadata import metadata
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +37,10 @@ BLOCK = re.compile(
     r"^ *### solution\n(?P<instructor>.*?)^ *### student\n(?P<student>.*?)^ *### end(?:\n|\Z)",
     re.MULTILINE | re.DOTALL,
 )
+PROJECT = dict(one.split(", ") for one in metadata("gym-babble").get_all("Project-URL"))
+PAGES = f"{PROJECT['Repository']}/blob/main/docs/"
+"""Where the pages are that a lesson links to, for who has a notebook alone."""
+LINK = re.compile(r"(?P<image>!?)(?P<text>\[[^\]]*\]\()\.\./(?!lab/)(?P<page>[^)]*)\)")
 STATE = re.compile(r'data-exercise="([^"]+)" data-state="(\w+)"')
 ANSI = re.compile(r"\x1b\[[0-9;]*m")
 SETUP = """\
@@ -100,8 +105,15 @@ class Lesson:
             cell["id"] = f"cell-{k}"  # The same each time.
             if cell.cell_type == "code":
                 cell.source = BLOCK.sub(lambda block: block[version], cell.source).rstrip("\n")
+            else:
+                cell.source = LINK.sub(_in_repository, cell.source)
         notebook.cells = cells
         return notebook
+
+
+def _in_repository(link: re.Match[str]) -> str:
+    raw = "?raw=true" if link["image"] else ""
+    return f"{link['image']}{link['text']}{PAGES}{link['page']}{raw})"
 
 
 def lessons() -> list[Lesson]:

@@ -94,9 +94,9 @@ impl Rule {
         a: &[f32],
     ) -> Result<(), AgentError> {
         match self {
-            Self::Covariance(rule) => association.learn(rule, g, a)?,
-            Self::Hebb(rule) => association.learn(rule, g, a)?,
-            Self::Oja(rule) => association.learn(rule, g, a)?,
+            Self::Covariance(rule) => rule.learn(association, g, a)?,
+            Self::Hebb(rule) => rule.learn(association, g, a)?,
+            Self::Oja(rule) => rule.learn(association, g, a)?,
             Self::Outstar(_) => association.learn_outstar(g, a)?,
             Self::Own(_) => {
                 return Err(AgentError::Config {

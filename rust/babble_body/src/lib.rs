@@ -13,7 +13,7 @@ pub mod skeleton;
 mod validate;
 pub mod visual;
 
-pub use arm::{ArmState, ContactWatch, Dynamics, PlanarArm};
+pub use arm::{ArmState, ContactWatch, Dynamics, PlanarArm, Pull};
 pub use config::Body;
 pub use error::BodyError;
 pub use geometry::obstacle::Obstacle;

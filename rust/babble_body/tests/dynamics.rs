@@ -3,7 +3,7 @@
 use babble_body::arm::PlanarArm;
 use babble_body::config::Muscles;
 use babble_body::skeleton::{self, BoneKind};
-use babble_body::{ArmState, Body, Dynamics};
+use babble_body::{ArmState, Body, Dynamics, Pull};
 use proptest::prelude::*;
 
 const DT: f64 = 0.005;
@@ -28,7 +28,9 @@ fn dynamics(body: &Body) -> (PlanarArm, Dynamics) {
 
 fn run(dynamics: &Dynamics, from: ArmState, q_des: [f64; 2], dt: f64, time: f64) -> ArmState {
     let steps = (time / dt).round() as usize;
-    (0..steps).fold(from, |state, _| dynamics.step(state, q_des, dt))
+    (0..steps).fold(from, |state, _| {
+        dynamics.step(state, Pull::Towards(q_des), dt)
+    })
 }
 
 /// Eq. 2 and the arm's inertia, integrated to fourth order:
@@ -268,7 +270,7 @@ fn torque_meets_damping_at_its_terminal_speed() {
     for torque in [[4.0, 0.0], [0.0, 4.0], [-3.0, 6.0]] {
         let mut state = ArmState::at_rest([1.0, 1.0]);
         for _ in 0..200 {
-            state = dynamics.step_torque(state, torque, DT);
+            state = dynamics.step(state, Pull::Torques(torque), DT);
         }
         for i in 0..2 {
             assert!(
@@ -313,7 +315,7 @@ proptest! {
         let mut state = ArmState { q, v };
         let mut energy = dynamics.kinetic_energy(state);
         for _ in 0..50 {
-            state = dynamics.step(state, [0.0; 2], dt);
+            state = dynamics.step(state, Pull::Towards([0.0; 2]), dt);
             let now = dynamics.kinetic_energy(state);
             prop_assert!(now <= energy * (1.0 + 1e-12), "{energy} J to {now} J at {state:?}");
             energy = now;
@@ -331,7 +333,7 @@ proptest! {
         let (arm, dynamics) = dynamics(&Body::paper());
         let mut state = ArmState::at_rest(arm.clamp(arm.denormalised(share)));
         for q_des in targets {
-            state = dynamics.step(state, q_des, dt);
+            state = dynamics.step(state, Pull::Towards(q_des), dt);
             prop_assert!(arm.in_range(state.q));
             prop_assert!(state.v.iter().all(|v| v.is_finite()));
         }

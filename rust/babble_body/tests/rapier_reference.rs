@@ -3,7 +3,7 @@
 
 mod spread;
 
-use babble_body::{ArmState, Body, Dynamics, PlanarArm};
+use babble_body::{ArmState, Body, Dynamics, PlanarArm, Pull};
 use rapier3d::prelude::*;
 use spread::spread;
 
@@ -109,7 +109,7 @@ fn difference(body: &Body, seed: usize, width: f64) -> f64 {
     for step in 0..1200 {
         let share = spread(1000 * seed + step / 100).map(|x| 0.5 + width * (x - 0.5));
         let q_des = arm.denormalised(share);
-        state = dynamics.step(state, q_des, DT);
+        state = dynamics.step(state, Pull::Towards(q_des), DT);
         robot.step(q_des, body.muscles.kp);
         for (ours, theirs) in state.q.into_iter().zip(robot.posture()) {
             worst = worst.max((ours - theirs).abs());

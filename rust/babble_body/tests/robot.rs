@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use babble_body::config::Fingers;
 use babble_body::robot::{Ball, MuscleCommand, Robot, Setup, towards};
-use babble_body::{ArmState, Body, Dynamics, Obstacle, PlanarArm};
+use babble_body::{ArmState, Body, Dynamics, Obstacle, PlanarArm, Pull};
 use grasping::{DT, FAR, ball_at_palm, bytes, reflex, robots, run, setup, with};
 use nalgebra::{Vector2, Vector3};
 use proptest::prelude::*;
@@ -39,7 +39,7 @@ fn free_motion_is_the_closed_form() {
         let mut world = robot.world(&setup(robot.open_hand(state.q), FAR));
         for step in 0..1200 {
             let q_des = arm.denormalised(spread(1000 * seed + step / 100));
-            state = dynamics.step(state, q_des, DT);
+            state = dynamics.step(state, Pull::Towards(q_des), DT);
             robot.step(&mut world, &towards(robot.open_hand(q_des)));
             let posture = robot.posture(&world);
             for (ours, theirs) in state.q.into_iter().zip(posture) {

@@ -2,6 +2,7 @@
 
 mod playing;
 
+use babble_body::Pull;
 use babble_env::tasks::reach::movement::{Fidelity, MovementPath};
 use babble_env::tasks::reach::{CaseRequest, ObstacleRequest};
 use babble_env::{
@@ -68,8 +69,7 @@ fn pattern_step_is_the_plan_played_posture_by_posture() {
         let settling = std::iter::repeat(path.postures().last().copied().unwrap_or(case.start));
         let plan = path.postures().iter().copied().chain(settling);
         for (&expected, q_des) in trail[1..].iter().zip(plan) {
-            let step = |state, dt| pattern.dynamics.step(state, q_des, dt);
-            pattern.advance(&mut arm, &mut watch, step);
+            pattern.advance(&mut arm, &mut watch, Pull::Towards(q_des));
             assert_eq!(arm.q, expected);
         }
     }

@@ -70,6 +70,32 @@ fn rules_that_are_built_in_give_the_same_bits_as_expressions() {
     }
 }
 
+/// A decay goes on where the output neuron is silent, with the bits of a plain loop over movements and weights.
+/// Catches silent movements that are left out or counted twice, and the sign of the decay.
+#[test]
+fn a_decay_gives_the_bits_of_a_plain_loop() {
+    let (g, a) = (
+        activities(MOVEMENTS * N_IN, 1),
+        activities(MOVEMENTS * N_OUT, 2),
+    );
+    let mut expected = vec![0.0_f32; N_IN * N_OUT];
+    for (g, a) in g.chunks(N_IN).zip(a.chunks(N_OUT)) {
+        for (w, a) in expected.chunks_mut(N_IN).zip(a) {
+            for (w, g) in w.iter_mut().zip(g) {
+                *w += 0.3 * a * (g - *w) - 0.01 * *w;
+            }
+        }
+    }
+    let numbers = OwnRule {
+        eta: 0.3,
+        ..OwnRule::default()
+    };
+    for decay in ["- 0.01 * w", "+ w * -0.01", "- w * 0.01"] {
+        let learnt = learnt_by(&format!("eta * a * (g - w) {decay}"), numbers);
+        assert_eq!(learnt.weights(), expected, "{decay}");
+    }
+}
+
 /// Eq. 7 in another order of operations differs by rounding alone: in each movement by a few units in the last
 /// place of a weight near `w_max`.
 #[test]

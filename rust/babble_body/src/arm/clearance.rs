@@ -118,7 +118,6 @@ impl ContactWatch {
 
     /// Looks at the straight joint motion `from` → `to`: the share of it at which the arm first
     /// touches, or none.
-    #[inline]
     pub fn touch(&mut self, arm: &PlanarArm, from: [f64; 2], to: [f64; 2]) -> Option<f64> {
         self.bound -= sweep(arm, from, to);
         if self.bound > 0.0 {

@@ -31,6 +31,15 @@ impl ArmState {
     }
 }
 
+/// What pulls at the joints.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Pull {
+    /// The muscles, towards an equilibrium point \[rad\].
+    Towards([f64; 2]),
+    /// Torques T = torque − `K_D` q̇ \[N·m\], whose torque is given.
+    Torques([f64; 2]),
+}
+
 /// Masses, centres of mass and moments of inertia of the two links.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmInertia {
@@ -77,26 +86,22 @@ impl Dynamics {
         &self.inertia
     }
 
-    /// One step of `dt` \[s\] towards the equilibrium point `q_des` \[rad\].
+    /// One step of `dt` \[s\] under a pull.
     #[inline]
     #[must_use]
-    pub fn step(&self, state: ArmState, q_des: [f64; 2], dt: f64) -> ArmState {
+    pub fn step(&self, state: ArmState, pull: Pull, dt: f64) -> ArmState {
         let (mass, coriolis) = self.mass_and_coriolis(state);
         let Muscles { kp, kd, .. } = self.muscles;
-        let rhs = [0, 1].map(|i| {
-            dt * (kp * (q_des[i] - state.q[i]) - (kd + dt * kp) * state.v[i] - coriolis[i])
-        });
-        self.advance(state, mass, dt * kd + dt * dt * kp, rhs, dt)
-    }
-
-    /// One step of `dt` \[s\] under the joint torques `T = torque − K_D q̇` \[N·m\].
-    #[inline]
-    #[must_use]
-    pub fn step_torque(&self, state: ArmState, torque: [f64; 2], dt: f64) -> ArmState {
-        let (mass, coriolis) = self.mass_and_coriolis(state);
-        let kd = self.muscles.kd;
-        let rhs = [0, 1].map(|i| dt * (torque[i] - kd * state.v[i] - coriolis[i]));
-        self.advance(state, mass, dt * kd, rhs, dt)
+        let (torque, damping, diagonal) = match pull {
+            Pull::Towards(q_des) => (
+                [0, 1].map(|i| kp * (q_des[i] - state.q[i])),
+                kd + dt * kp,
+                dt * kd + dt * dt * kp,
+            ),
+            Pull::Torques(torque) => (torque, kd, dt * kd),
+        };
+        let rhs = [0, 1].map(|i| dt * (torque[i] - damping * state.v[i] - coriolis[i]));
+        self.advance(state, mass, diagonal, rhs, dt)
     }
 
     /// Kinetic energy \[J\].

@@ -3,10 +3,11 @@
 mod clearance;
 mod dynamics;
 mod outline;
+mod period;
 mod planar_arm;
 
 pub use clearance::{ContactWatch, sweep};
 pub(crate) use dynamics::cross_section;
-pub use dynamics::{ArmInertia, ArmState, Dynamics};
+pub use dynamics::{ArmInertia, ArmState, Dynamics, Pull};
 pub use outline::Segment;
 pub use planar_arm::{ArmPose, PlanarArm};

@@ -1,6 +1,8 @@
 //! An expression for a block of movements, one tile of weights after the other.
 
 use std::mem::swap;
+use std::ops::Range;
+use std::ptr;
 
 use babble_agent::AgentError;
 use babble_brain::{Association, BrainError};
@@ -79,8 +81,16 @@ struct Block<'a> {
     output: Activities<'a>,
     /// Signals of the output as `[output neuron][movement][signal]`.
     post: Vec<f32>,
-    /// Movements in which each output neuron learns, and the program of the change then.
-    active: Vec<Vec<(usize, &'a Program)>>,
+    /// How each output neuron learns in the movements.
+    runs: Vec<Vec<Run<'a>>>,
+}
+
+/// Movements in a row in which an output neuron learns by the same program.
+struct Run<'a> {
+    movements: Range<usize>,
+    program: &'a Program,
+    /// Rates of the movements, if it is a decay.
+    rates: Option<Vec<f32>>,
 }
 
 impl<'a> Block<'a> {
@@ -105,7 +115,7 @@ impl<'a> Block<'a> {
             input: activities(n_in, g, g_mean),
             output: activities(n_out, a, a_mean),
             post: Vec::new(),
-            active: Vec::new(),
+            runs: Vec::new(),
         };
         block.compute_post();
         Ok(block)
@@ -122,12 +132,33 @@ impl<'a> Block<'a> {
                 self.post.extend(signals.iter().map(|signal| signal[lane]));
             }
         }
-        let active = |j| {
-            let movements = 0..self.movements();
-            let program = |m| Some((m, self.program(j, m)?));
-            movements.filter_map(program).collect()
-        };
-        self.active = (0..self.output.neurons).map(active).collect();
+        self.runs = (0..self.output.neurons).map(|j| self.runs_of(j)).collect();
+    }
+
+    /// The runs of output neuron `j`.
+    fn runs_of(&self, j: usize) -> Vec<Run<'a>> {
+        let mut runs: Vec<Run<'a>> = Vec::new();
+        for m in 0..self.movements() {
+            let Some(program) = self.program(j, m) else {
+                continue;
+            };
+            match runs.last_mut() {
+                Some(run) if run.movements.end == m && ptr::eq(run.program, program) => {
+                    run.movements.end += 1;
+                }
+                _ => runs.push(Run {
+                    movements: m..m + 1,
+                    program,
+                    rates: None,
+                }),
+            }
+        }
+        for run in &mut runs {
+            let movements = run.movements.clone();
+            let rates = |signal| movements.map(|m| self.post_of(j, m)[signal]).collect();
+            run.rates = run.program.decay().map(rates);
+        }
+        runs
     }
 
     /// The program for the change of weights to output neuron `j` in movement `m`; none if they do not change.
@@ -155,9 +186,15 @@ impl<'a> Block<'a> {
             for (j, w_j) in w.chunks_exact_mut(n_in).enumerate() {
                 let weights = &mut w_j[tile * LANES..n_in.min((tile + 1) * LANES)];
                 let (mut before, mut after) = (&mut padded(weights), &mut [0.0; LANES]);
-                for &active in &self.active[j] {
-                    self.change(j, active, &pre, before, &mut memory, after);
-                    swap(&mut before, &mut after);
+                for run in &self.runs[j] {
+                    if let Some(rates) = &run.rates {
+                        run.program.decay_by(rates, before);
+                        continue;
+                    }
+                    for m in run.movements.clone() {
+                        self.change(j, (m, run.program), &pre, before, &mut memory, after);
+                        swap(&mut before, &mut after);
+                    }
                 }
                 let changed = &before[..weights.len()];
                 if !changed.iter().all(|w| w.is_finite()) {
@@ -188,7 +225,11 @@ impl<'a> Block<'a> {
     fn not_finite(&self, j: usize, tile: usize, pre: &[Tile], weights: &[f32]) -> AgentError {
         let mut memory = self.rule.memory();
         let mut w = padded(weights);
-        let found = self.active[j].iter().find_map(|&(m, program)| {
+        let mut movements = self.runs[j].iter().flat_map(|run| {
+            let movements = run.movements.clone();
+            movements.map(move |m| (m, run.program))
+        });
+        let found = movements.find_map(|(m, program)| {
             let before = w;
             self.change(j, (m, program), pre, &before, &mut memory, &mut w);
             let lane = w[..weights.len()].iter().position(|w| !w.is_finite())?;

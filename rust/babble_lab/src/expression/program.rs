@@ -7,6 +7,9 @@ use super::syntax::{One, Two};
 /// Numbers that an instruction computes at a time: enough that finding out which one it is costs little.
 pub(super) const LANES: usize = 64;
 
+/// Weights that are held in vector registers while they decay.
+const IN_REGISTERS: usize = 32;
+
 /// A part of a row.
 pub(super) type Tile = [f32; LANES];
 
@@ -64,6 +67,32 @@ impl Program {
         match operand(self.result, &[], first, others, memory) {
             Operand::Scalar(x) => [x; LANES],
             Operand::Row(row) => *row,
+        }
+    }
+
+    /// The scalar of a decay: a program that is no more than a scalar times row 0.
+    pub(super) fn decay(&self) -> Option<usize> {
+        match *self.instructions {
+            [
+                Instruction::Two(Two::Multiply, Source::Scalar(rate), Source::Row(0))
+                | Instruction::Two(Two::Multiply, Source::Row(0), Source::Scalar(rate)),
+            ] => Some(rate),
+            _ => None,
+        }
+    }
+
+    /// Adds the value to row 0 of a [decay](Self::decay), once for each of its `rates`: part by part, so that
+    /// the weights stay in vector registers.
+    pub(super) fn decay_by(&self, rates: &[f32], row: &mut Tile) {
+        for part in row.as_chunks_mut::<IN_REGISTERS>().0 {
+            let mut w = *part;
+            for &rate in rates {
+                let rate = if self.is_negative { -rate } else { rate };
+                for w in &mut w {
+                    *w += rate * *w;
+                }
+            }
+            *part = w;
         }
     }
 

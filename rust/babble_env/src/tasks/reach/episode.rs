@@ -1,6 +1,6 @@
 //! One episode of reaching.
 
-use babble_body::ArmState;
+use babble_body::{ArmState, Pull};
 use babble_eye::{Gaze, Pinhole};
 
 use super::case::ReachCase;
@@ -201,9 +201,7 @@ fn move_arm(
     let touched = if task.options.control == Control::Torque {
         let torque = action.map(|a| a * muscles.torque_max);
         let pull = task.with_torque_errors(torque, errors);
-        let touched = task.advance(&mut state.arm, &mut watch, |arm, dt| {
-            task.dynamics.step_torque(arm, pull, dt)
-        });
+        let touched = task.advance(&mut state.arm, &mut watch, Pull::Torques(pull));
         // The posture whose spring would pull as hard: the muscles' state in this control.
         state.equilibrium = [0, 1].map(|i| state.arm.q[i] + torque[i] / muscles.kp);
         touched
@@ -216,9 +214,7 @@ fn move_arm(
                 .clamp([0, 1].map(|i| state.equilibrium[i] + unit * action[i]))
         };
         let q_des = task.with_errors(state.equilibrium, errors);
-        task.advance(&mut state.arm, &mut watch, |arm, dt| {
-            task.dynamics.step(arm, q_des, dt)
-        })
+        task.advance(&mut state.arm, &mut watch, Pull::Towards(q_des))
     };
     if task.options.record {
         state.trail.push(state.arm.q);

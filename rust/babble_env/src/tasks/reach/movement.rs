@@ -1,6 +1,6 @@
 //! One whole movement along the path of the pattern generators (Sect. III-A).
 
-use babble_body::ArmState;
+use babble_body::{ArmState, Pull};
 use babble_brain::TimeBaseGenerator;
 use nalgebra::Vector2;
 
@@ -157,9 +157,7 @@ impl MovementPath {
         let held = std::iter::repeat_n(last, settling);
         for (k, asked) in self.postures.iter().copied().chain(held).enumerate() {
             let q_des = task.with_errors(asked, errors);
-            let touched = task.advance(&mut arm, &mut watch, |state, dt| {
-                task.dynamics.step(state, q_des, dt)
-            });
+            let touched = task.advance(&mut arm, &mut watch, Pull::Towards(q_des));
             each(&arm);
             if touched {
                 let time_s = (k + 1) as f64 * period;

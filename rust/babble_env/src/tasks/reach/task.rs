@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use babble_body::config::Muscles;
-use babble_body::{ArmState, ContactWatch, Dynamics, Obstacle, PlanarArm};
+use babble_body::{ArmState, ContactWatch, Dynamics, Obstacle, PlanarArm, Pull};
 use babble_eye::{Eye, Pinhole};
 use nalgebra::{Vector2, Vector3};
 
@@ -68,24 +68,10 @@ impl ReachTask {
     }
 
     /// One control period of physics; true if the arm touched the obstacle, and then stands there.
-    #[inline]
-    pub fn advance(
-        &self,
-        arm: &mut ArmState,
-        watch: &mut ContactWatch,
-        step: impl Fn(ArmState, f64) -> ArmState,
-    ) -> bool {
-        let dt = self.config.reach.physics_step_s();
-        for _ in 0..self.config.reach.physics_steps {
-            let next = step(*arm, dt);
-            if let Some(share) = watch.touch(&self.arm, arm.q, next.q) {
-                let q = [0, 1].map(|i| arm.q[i] + share * (next.q[i] - arm.q[i]));
-                *arm = ArmState::at_rest(q);
-                return true;
-            }
-            *arm = next;
-        }
-        false
+    pub fn advance(&self, arm: &mut ArmState, watch: &mut ContactWatch, pull: Pull) -> bool {
+        let reach = &self.config.reach;
+        let steps = (reach.physics_steps, reach.physics_step_s());
+        self.dynamics.play(&self.arm, arm, watch, pull, steps)
     }
 
     /// The equilibrium points that the muscles pull to \[rad\] when these are asked for.

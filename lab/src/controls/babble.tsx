@@ -81,7 +81,7 @@ export function BabbleControls({ session }: { session: Session }) {
         </>
       )}
       <div class="row">
-        <Act session={session} work={() => test(session)}>
+        <Act session={session} disabled={session.job.value?.bar ?? false} work={() => test(session)}>
           Test on {cases} cases
         </Act>
       </div>

@@ -5,7 +5,6 @@ import { copyText } from "../shell/copy";
 import { Act, Group } from "./group";
 
 export function FileControls({ session }: { session: Session }) {
-  const [name, setName] = useState("");
   const agent = session.shownAgent.value;
   const learns = session.state.value.agents[agent]?.learns ?? false;
   return (
@@ -16,14 +15,20 @@ export function FileControls({ session }: { session: Session }) {
           <input
             type="text"
             maxLength={100}
-            value={name}
-            onInput={(event) => setName(event.currentTarget.value)}
+            value={session.name.value}
+            onInput={(event) => {
+              session.name.value = event.currentTarget.value;
+            }}
           />
         </label>
-        <Act session={session} work={() => handIn(session, name.trim())}>
+        <Act session={session} disabled={session.name.value.trim() === ""} work={() => handIn(session)}>
           Download what you did, to hand in
         </Act>
       </div>
+      <p class="hint">
+        The record needs your name. It has what you did in one lesson: download it before you go on to
+        another.
+      </p>
       <div class="row">
         <Act session={session} disabled={!learns} work={() => saveAgent(session, agent)}>
           Save the agent
@@ -49,10 +54,10 @@ export function FileControls({ session }: { session: Session }) {
   );
 }
 
-async function handIn(session: Session, name: string): Promise<void> {
-  const lesson = session.lesson.value;
-  const record = await session.engine.record(lesson?.id ?? null, name);
-  download(new Blob([record], { type: "application/json" }), `${fileName(lesson?.id ?? "lab", name)}.json`);
+async function handIn(session: Session): Promise<void> {
+  const record = await session.record();
+  const name = fileName(session.lesson.value?.id ?? "lab", session.name.value);
+  download(new Blob([record], { type: "application/json" }), `${name}.json`);
   session.said.value = "What you did is downloaded as a file to hand in.";
 }
 

@@ -17,12 +17,18 @@ export async function babble(session: Session, babbles: number): Promise<void> {
   const work = session.begin("Babbling", babbles);
   try {
     const done = await babbleSlices(session, work, babbles, 0);
-    session.said.value = `Learnt from ${done.toLocaleString("en")} ${done === 1 ? "babble" : "babbles"}.`;
+    session.said.value = learntFrom(done, babbles);
   } finally {
     session.watched.value = null;
     await session.showSlices();
     work.end();
   }
+}
+
+function learntFrom(done: number, wanted: number): string {
+  if (done < wanted)
+    return `Stopped: learnt from ${done.toLocaleString("en")} of ${wanted.toLocaleString("en")} babbles.`;
+  return `Learnt from ${done.toLocaleString("en")} ${done === 1 ? "babble" : "babbles"}.`;
 }
 
 /** Plays the test cases, which is a point of the learning curve. */

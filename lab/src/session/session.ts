@@ -33,11 +33,15 @@ export class Session {
   /** The babble that is shown. */
   readonly watched = signal<Watched | null>(null);
   readonly paused = signal(false);
+  /** Who hands in, kept from lesson to lesson. */
+  readonly name = signal("");
   readonly task = computed(() => this.taskOf(this.state.value.setup.env));
   readonly progress = computed(() => this.shown.value.progress);
   private work: Work | null = null;
   private sliced: State | null = null;
   private steps = 0;
+  /** What was downloaded last, to hand in. */
+  private downloaded = "";
 
   private constructor(
     readonly engine: Engine,
@@ -148,8 +152,32 @@ export class Session {
     await this.show();
   }
 
-  /** Begins a lesson with its own setup, or leaves the one that runs. */
+  /** The record of what was done, as a file to hand in. */
+  async record(): Promise<string> {
+    const record = await this.engine.record(this.lesson.value?.id ?? null, this.name.value.trim());
+    this.downloaded = this.mark();
+    return record;
+  }
+
+  /** Whether something was done in a lesson that no downloaded record has. */
+  hasUndelivered(): boolean {
+    return this.lesson.value !== null && this.state.value.commands > 0 && this.mark() !== this.downloaded;
+  }
+
+  private mark(): string {
+    const { commands, hash } = this.state.value;
+    return `${this.lesson.value?.id} ${commands} ${hash}`;
+  }
+
+  /** Asks before the record of a lesson is lost. */
+  private mayLeave(): boolean {
+    const lost = "What you did in this lesson is not downloaded, and will be lost. Leave the lesson?";
+    return !this.hasUndelivered() || confirm(lost);
+  }
+
+  /** Begins a lesson with its own setup, or leaves the one that runs, if the user agrees. */
   async beginLesson(lesson: Lesson | null): Promise<void> {
+    if (!this.mayLeave()) return;
     const setup = lesson?.setup ?? this.state.value.setup;
     const view = lesson && isView(lesson.view) ? lesson.view : "all";
     const hidden = lesson?.hidden.filter(isControl) ?? [];
@@ -207,7 +235,9 @@ export class Session {
     const { link, faults } = readLink(hash, this.defaults);
     this.linkFaults.value = faults.map(({ key, problem }) => `${key}: ${problem}`);
     this.stop();
-    if (link.lesson !== (this.lesson.value?.id ?? null)) return this.open(link.setup, link);
+    if (link.lesson !== (this.lesson.value?.id ?? null)) {
+      return this.mayLeave() ? this.open(link.setup, link) : undefined;
+    }
     const { setup } = link;
     await addShippedPolicies(this.engine, setup);
     if (same(setup, this.state.value.setup)) this.arrange(link);

@@ -20,6 +20,7 @@ import { Status } from "./status";
 
 export function App({ session }: { session: Session }) {
   useUndoKey(session);
+  useUndelivered(session);
   return (
     <>
       <button type="button" class="skip" onClick={() => document.getElementById("controls")!.focus()}>
@@ -100,6 +101,17 @@ function useUndoKey(session: Session): void {
     };
     addEventListener("keydown", onKey);
     return () => removeEventListener("keydown", onKey);
+  }, [session]);
+}
+
+/** Lets the browser ask before it closes or reloads a lesson whose record is not downloaded. */
+function useUndelivered(session: Session): void {
+  useEffect(() => {
+    const onUnload = (event: BeforeUnloadEvent) => {
+      if (session.hasUndelivered()) event.preventDefault();
+    };
+    addEventListener("beforeunload", onUnload);
+    return () => removeEventListener("beforeunload", onUnload);
   }, [session]);
 }
 

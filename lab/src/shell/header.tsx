@@ -75,6 +75,8 @@ function LessonSelect({ session }: { session: Session }) {
         value={session.lesson.value?.id ?? ""}
         onChange={(event) => {
           const lesson = lessons.find(({ id }) => id === event.currentTarget.value) ?? null;
+          // Where the user stays, the menu shall say so.
+          event.currentTarget.value = session.lesson.value?.id ?? "";
           void session.attempt(() => session.beginLesson(lesson));
         }}
       >

@@ -233,13 +233,13 @@ build/wheel: $(STAMPS)/extension $(shell find gym_babble -name '*.py')
 	$(BIN)/maturin build --release --out $@
 
 # Beside what each set of frameworks pins. uv downloads a Python 3.12 if none is here.
-$(FRAMEWORKS)/%/installed: .ci/frameworks-%.txt $(WHEEL)
+$(FRAMEWORKS)/%/installed: .ci/frameworks-%.txt $(WHEEL) | $(STAMPS)/dependencies
 	$(BIN)/uv venv --quiet --allow-existing --python "$$(source .ci/machine.sh; python_of 3.12 || echo 3.12)" $(@D)
 	$(BIN)/uv pip install --quiet --python $(@D)/bin/python --reinstall-package gym-babble -r $< "$$(find $(WHEEL) -name '*.whl')"
 	@touch $@
 
 # The wheel with one of its extras beside `figures`, and what executes a notebook.
-$(LESSONS)/%/installed: constraints.txt $(WHEEL)
+$(LESSONS)/%/installed: constraints.txt $(WHEEL) | $(STAMPS)/dependencies
 	$(BIN)/uv venv --quiet --allow-existing --python $(BIN)/python $(@D)
 	wheel=$$(find $(abspath $(WHEEL)) -name '*.whl') && $(BIN)/uv pip install --quiet --python $(@D)/bin/python \
 		--constraints constraints.txt --reinstall-package gym-babble \

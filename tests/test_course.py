@@ -274,6 +274,17 @@ def test_without_a_name_nothing_is_written(tmp_path):
     assert not [*tmp_path.iterdir()]
 
 
+def test_a_new_session_keeps_the_file_of_an_earlier_one(tmp_path):
+    course.check("1.1", 3)
+    earlier = course.hand_in(1, "Ada", tmp_path).path
+    before = earlier.read_bytes()
+    checks.answers_seen.clear()
+    done = course.hand_in(1, "Ada", tmp_path)
+    assert done.path is None
+    assert "Run the notebook from its start" in repr(done)
+    assert earlier.read_bytes() == before
+
+
 @pytest.mark.parametrize(
     ("name", "file"),
     [

@@ -47,10 +47,12 @@ SETUP = """\
 # Installs what is missing. In an environment that has everything, this does nothing.
 from importlib.util import find_spec
 
+if not find_spec("gym_babble"):
+    raise ModuleNotFoundError("install gym-babble, or the wheel of your class: {start}")
 if not all(map(find_spec, {modules!r})):
     %pip install --quiet "gym-babble[{extras}]"\
 """
-MODULES = {"figures": ("gym_babble", "matplotlib"), "sb3": ("stable_baselines3",)}
+MODULES = {"figures": ("matplotlib",), "sb3": ("stable_baselines3",)}
 """What a lesson imports of each extra that it needs."""
 NO_NETWORK = """
 import socket
@@ -99,7 +101,7 @@ class Lesson:
         notebook.metadata.pop("jupytext", None)
         cells = [cell for cell in notebook.cells if _belongs(cell, version)]
         modules = tuple(name for extra in extras.split(",") for name in MODULES[extra])
-        setup = SETUP.format(modules=modules, extras=extras)
+        setup = SETUP.format(modules=modules, extras=extras, start=f"{PAGES}start.md")
         cells.insert(1, nbformat.v4.new_code_cell(setup))
         for k, cell in enumerate(cells):
             cell["id"] = f"cell-{k}"  # The same each time.

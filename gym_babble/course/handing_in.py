@@ -37,7 +37,8 @@ def hand_in(lesson: str | int, name: str | EllipsisType, folder: str | Path = ".
 
     Args:
         lesson: Number of the lesson.
-        name: Who hands it in; at most 200 letters. With `...` nothing is written.
+        name: Who hands it in; at most 200 letters. With `...` nothing is written, as for a session
+            without answers.
         folder: Where to write the file, which replaces an earlier one.
 
     Returns:
@@ -52,8 +53,14 @@ def hand_in(lesson: str | int, name: str | EllipsisType, folder: str | Path = ".
     if name is ...:  # The blank of a student's notebook.
         return HandedIn(path=None, text="Nothing was written: give your name.", states=states)
     path = check_path("folder", folder) / f"lesson-{lesson}-{_part_of_path(name)}.json"
-    check_file(path, "hand_in")
     given = {k: _plain(answers_seen[k].seen) for k in states if k in answers_seen}
+    if not given:  # An earlier file may have them.
+        text = (
+            "Nothing was written: this session has no answers to the lesson. Run the notebook from "
+            "its start, then this cell."
+        )
+        return HandedIn(path=None, text=text, states=states)
+    check_file(path, "hand_in")
     document = {
         "format": FORMAT,
         "package": __version__,

@@ -61,8 +61,8 @@ class BabbleReachEnv(BabbleEnv):
     ## Starting state
 
     The arm rests at the start of a babbled movement that was legal: target uniform in joint space,
-    start 8–25 cm from it in a uniform direction, b1 uniform in (.01, .99), drawn until the movement
-    neither touches the obstacle nor leaves the joint ranges. Body `icub`: 10–20 cm. In `pattern`
+    start 8–25 cm from it in a uniform direction, b1 uniform in (.01, .99), drawn again while the
+    movement touches the obstacle or leaves the joint ranges. Body `icub`: 10–20 cm. In `pattern`
     control the movement is simulated with the muscles' lag, as for Table I's cases, so that some
     action solves the case; in the other controls without it.
 
@@ -72,9 +72,9 @@ class BabbleReachEnv(BabbleEnv):
       `settled=True` also joint speeds below .05 rad/s. In `pattern` control only the end of the
       movement counts, by the same measure.
     - `collision` (terminated): arm or hand touches the obstacle, at any moment within a step. With
-      `obs="goal"` the arm stands still until the time limit instead, since ending early would pay,
-      and `achieved_goal` is a corner of its space, for which `compute_reward` is −1 whatever the
-      goal.
+      `obs="goal"` the arm stands still until the time limit instead, or colliding would pay
+      (−1 a step), and `achieved_goal` is a corner of its space, for which `compute_reward` is −1
+      whatever the goal.
     - `joint_limit` (terminated): in `pattern` control, the path asks for a posture outside of the
       joint ranges.
     - `timeout`: truncated after 240 steps (12 s). In `pattern` control every step terminates;

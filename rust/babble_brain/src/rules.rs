@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::association::Association;
 use crate::error::{BrainError, check_range};
 
 /// Deviations from an average that are smaller than this count as zero. A weight moves by at most
@@ -206,19 +205,6 @@ impl Default for OjaRule {
 }
 
 impl CovarianceRule {
-    /// [`Association::learn`] by this rule, compiled as this crate is rather than as its user.
-    ///
-    /// # Errors
-    /// As there.
-    pub fn learn(
-        &self,
-        association: &mut Association,
-        g: &[f32],
-        a: &[f32],
-    ) -> Result<(), BrainError> {
-        association.learn(self, g, a)
-    }
-
     /// Checks the parameters.
     ///
     /// # Errors
@@ -229,19 +215,6 @@ impl CovarianceRule {
 }
 
 impl HebbRule {
-    /// [`Association::learn`] by this rule, compiled as this crate is rather than as its user.
-    ///
-    /// # Errors
-    /// As there.
-    pub fn learn(
-        &self,
-        association: &mut Association,
-        g: &[f32],
-        a: &[f32],
-    ) -> Result<(), BrainError> {
-        association.learn(self, g, a)
-    }
-
     /// Checks the parameters.
     ///
     /// # Errors
@@ -252,19 +225,6 @@ impl HebbRule {
 }
 
 impl OjaRule {
-    /// [`Association::learn`] by this rule, compiled as this crate is rather than as its user.
-    ///
-    /// # Errors
-    /// As there.
-    pub fn learn(
-        &self,
-        association: &mut Association,
-        g: &[f32],
-        a: &[f32],
-    ) -> Result<(), BrainError> {
-        association.learn(self, g, a)
-    }
-
     /// Checks the parameters.
     ///
     /// # Errors

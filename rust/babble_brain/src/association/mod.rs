@@ -1,6 +1,7 @@
 //! All-to-all connections between two maps: weights, running averages, learning and recall (Eq. 4).
 
 mod block;
+mod built_in;
 mod outstar;
 
 use block::{BLOCK, Block, LANES, moved};

@@ -34,6 +34,7 @@ for (const link of ["agent=conjunctive", "env=BabbleGrasp-v0", "env=BabbleGrasp-
       await speed(page, value);
       for (let babbles = 0; babbles < 2; babbles += 1) await run(page, "Babble once");
       await page.getByRole("heading", { name: "Take it with you" }).click();
+      await page.getByLabel("your name").fill("Ada");
       const download = page.waitForEvent("download");
       await page.getByRole("button", { name: /^Download what you did/ }).click();
       return JSON.parse(await readFile(await (await download).path(), "utf8"));
